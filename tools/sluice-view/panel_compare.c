@@ -73,16 +73,17 @@ void panel_compare_choose(struct view_app *app)
     ui_same_line(0);
     if (ui_button("A", 44 * ui_scale(), 0, !app->edits_b))
         app->edits_b = false;
-    ui_hint("The controls change A: the picture, and the left one of a comparison.");
+    ui_hint("Controls change A: the picture, and the left picture of a comparison.");
     ui_same_line(0);
     if (ui_button("B", 44 * ui_scale(), 0, app->edits_b))
         app->edits_b = true;
-    ui_hint("The controls change B, which V compares with A. What is not listed then is shared. "
-            "--b NAME=VALUE");
+    ui_hint(
+        "Controls change B, which V compares with A. Controls that are not listed then are shared. "
+        "--b NAME=VALUE");
     ui_same_line(0);
     if (ui_button("Swap (X)", 0, 0, false))
         actions_press(app, 'X', 0);
-    ui_hint("A and B change places, with all that is in memory: nothing is loaded again. Key X.");
+    ui_hint("Exchanges A and B with their tiles: nothing is loaded again. Key X.");
     if (!app->edits_b)
         return;
     draw_preset(app, "everything", VIEW_WITH_EVERYTHING,

@@ -104,8 +104,9 @@ static void draw_budget(struct view_app *app, const char *label)
     draw_budget_slider(app, label, most);
     if (!app->dragged_budget)
         ui_hint(
-            "Most memory for tiles: the picture becomes coarser when it is short. Takes effect "
-            "when it is released.\nDouble click or Delete: no limit. Enter: type MiB. --budget");
+            "Most memory for tiles. The picture becomes coarser when memory is short. Takes effect "
+            "when the slider is released.\nDouble click or Delete: no limit. Enter: type MiB. "
+            "--budget");
     if (ui_double_clicked() || ui_deleted())
         app->settings.budget = 0;
     panel_size(app->facts.wanted_size, wanted, sizeof wanted);
@@ -160,8 +161,9 @@ static void draw_feedback_outlook(const struct view_app *app)
     else
         ui_text(outlook.missed > 0.01 ? UI_ORANGE : UI_GRAY,
                 "seen within %.0f frames, missed %.2g %%", outlook.frames, 100 * outlook.missed);
-    ui_hint("Predicted for 8 x 8 pixels: 99 of 100 are noticed within so many frames; so many that "
-            "stay in view are evicted, because no map shows them within --timeout.");
+    ui_hint(
+        "Predicted for regions of 8 x 8 pixels: frames until 99 of 100 regions are noticed, and "
+        "the part of visible regions that is evicted because no map shows them within --timeout.");
 }
 
 static void draw_sizes(struct view_app *app)

@@ -80,8 +80,8 @@ static void draw_filters(struct view_app *app)
     if (ui_check("selected texture alone", &selected))
         app->settings.events_of = selected ? VIEW_EVENTS_OF_SELECTED : VIEW_EVENTS_OF_ALL;
     ui_end_disabled();
-    ui_hint("Click a surface to select its texture; click nothing to list those of all. "
-            "--events-of");
+    ui_hint("Click a surface to select its texture. Click the background to list events of all "
+            "textures. --events-of");
     ui_same_line(0);
     if (selected && app->selected < app->facts.texture_count)
         ui_text(UI_BLUE, "%s", stage_texture(app->stage, app->selected)->name);

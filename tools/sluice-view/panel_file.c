@@ -100,7 +100,7 @@ void panel_file(struct view_app *app)
     if (panel_begin(app, PANEL_FILE, "File and messages (Shift+I)", 460, 360)) {
         const bool said = messages_count() > facts->first_message;
         if (facts->failed[0]) {
-            ui_paragraph(UI_RED, "This cannot be opened; the scene before stays:");
+            ui_paragraph(UI_RED, "This cannot be opened; the previous scene stays:");
             ui_paragraph(UI_WHITE, facts->failed);
         }
         draw_messages(facts);

@@ -237,7 +237,7 @@ static void draw_quantiles(struct view_app *app, enum history_span span)
     }
     ui_text(UI_WHITE, "Frames%s: half within %.1f ms (p50), 99 %% within %.1f ms (p99)",
             app->headless ? ", time by number" : "", 1e3 * q->seconds[0], 1e3 * q->seconds[1]);
-    ui_hint("Of the span that is shown, at most the last %u frames.", HISTORY_FRAMES);
+    ui_hint("Quantiles over the shown span, at most over the last %u frames.", HISTORY_FRAMES);
 }
 
 static void draw_spans(struct view_app *app)
@@ -254,7 +254,7 @@ static void draw_spans(struct view_app *app)
     if (age > 0 && ui_button("Now", 0, 0, false))
         app->pinned = 0;
     if (age > 0) {
-        ui_hint("Shows the values of now. So does a click on the white line.");
+        ui_hint("Shows the present values. A click on the white line does so, too.");
         ui_same_line(0);
         ui_text(UI_ORANGE, "values of %.1f s ago", age * step);
     } else {

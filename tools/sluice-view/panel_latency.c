@@ -66,9 +66,10 @@ static void draw_stage(const SluiceLoadStageCounts *stage, const char *name)
             (unsigned long long)stage_wait(stage, 0.5), (unsigned long long)stage_wait(stage, 0.99),
             (unsigned long long)stage->frameMax,
             stage->count ? (double)stage->frameSum / (double)stage->count : 0.0);
-    ui_hint("%llu maps or tiles left this stage. p50 and p99: half and 99 %% of them took so many "
-            "frames or fewer, rounded up to 1, 3, 7, 15, ...",
-            (unsigned long long)stage->count);
+    ui_hint(
+        "%llu maps or tiles left this stage. p50 and p99: frames that 50 %% and 99 %% of them did "
+        "not exceed, rounded up to 1, 3, 7, 15, ...",
+        (unsigned long long)stage->count);
     draw_bars(stage->buckets, 18);
 }
 

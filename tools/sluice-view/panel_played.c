@@ -116,12 +116,12 @@ static void draw_warnings(const struct view_app *app)
     }
     if (p->end.divergedEvent > 0) {
         ui_text(UI_ORANGE, "decisions differ from the recorded ones");
-        ui_hint("From call %llu on: another version of the library recorded it.",
+        ui_hint("From call %llu on. Another version of the library made the recording.",
                 (unsigned long long)p->end.divergedEvent);
     }
     if (p->lost_events > 0) {
         ui_text(UI_ORANGE, "%llu events are not shown", (unsigned long long)p->lost_events);
-        ui_hint("A call changed more tiles than events are kept.");
+        ui_hint("A call changed more tiles than the list of events keeps.");
     }
 }
 
@@ -243,7 +243,8 @@ void panel_played_device(const struct view_app *app)
                                        : "all decisions as recorded");
     ui_text(UI_GRAY, "%u checkpoints, %s, every %u frames", p->point_count,
             panel_size(p->point_size, size, sizeof size), p->stride);
-    ui_hint("States that steps back begin from. --json and docs/viewer.md name their cost.");
+    ui_hint(
+        "Saved states, from which steps back begin. --json and docs/viewer.md give their cost.");
 }
 
 void panel_played_reason(const struct view_app *app)

@@ -108,17 +108,18 @@ static void draw_buttons(struct view_app *app)
         const uint32_t view = app->settings.view;
         if (ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
             app_set_view(app, view == VIEW_RESIDENT ? VIEW_PICTURE : VIEW_RESIDENT);
-        ui_hint("Colors the picture by the level of detail that is in memory. Key 2; 1 comes "
-                "back.");
+        ui_hint("Colors the picture by the level of detail in memory. Key 2; key 1 returns to the "
+                "picture.");
         ui_same_line(0);
         if (ui_button("Why is this blurry? (3)", width, height, view == VIEW_MISSING))
             app_set_view(app, view == VIEW_MISSING ? VIEW_PICTURE : VIEW_MISSING);
-        ui_hint("Colors what is coarser than the camera asks for. Right click it for the reason. "
-                "Key 3; 1 comes back.");
+        ui_hint(
+            "Colors surfaces that are coarser than the camera requests. Right click one for the "
+            "reason. Key 3; key 1 returns to the picture.");
         ui_same_line(0);
         if (ui_button("With 16 MB (B)", width, height, app->demonstrating))
             actions_press(app, 'B', 0);
-        ui_hint("Takes memory away until 16 MB are left, and gives it back. Key B.");
+        ui_hint("Lowers the budget to 16 MB for some seconds, and restores it. Key B.");
     }
     ui_end_panel();
 }

@@ -268,7 +268,7 @@ const char *traced_explain(const struct traced *t, uint32_t picture, bool *good,
     *good = false;
     if (!p->id)
         return say(text, size, good, false,
-                   "No ray has asked for it: no material that was hit names it.");
+                   "No ray has requested it: no material that rays hit uses it.");
     if (p->refused_count > 0 && p->tile_count == 0)
         return say(text, size, good, false,
                    "It cannot be read: its surfaces are gray. Shift+I says why.");
@@ -276,7 +276,7 @@ const char *traced_explain(const struct traced *t, uint32_t picture, bool *good,
         return say(text, size, good, false,
                    "It is being opened. Its tiles are made first if the cache has none.");
     if (p->refused_count > 0)
-        snprintf(text, size, "%u tiles cannot be read, or found no memory: coarser ones serve.",
+        snprintf(text, size, "%u tiles cannot be read or found no memory: coarser tiles are shown.",
                  p->refused_count);
     else if (t->now.lodBias > 0)
         snprintf(text, size,
@@ -286,6 +286,6 @@ const char *traced_explain(const struct traced *t, uint32_t picture, bool *good,
         snprintf(text, size, "%u tiles are on their way.", p->pending_count);
     else
         return say(text, size, good, true,
-                   "As sharp as rays ask for: all tiles that they sampled are resident.");
+                   "As sharp as rays request: all tiles that they sample are resident.");
     return text;
 }

@@ -33,7 +33,7 @@ void viewer_begin_recording(struct viewer *v, const char *path)
     if (!v->stage)
         return;
     if (stage_played(v->stage)) {
-        text_say("sluice-view: a recording is not recorded again: sluice-replay --record does");
+        text_say("sluice-view: a recording cannot be recorded; use sluice-replay --record");
         return;
     }
     if (path)
