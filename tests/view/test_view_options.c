@@ -68,6 +68,7 @@ static void every_setting_and_the_camera_come_back_from_the_copied_command(void 
     app_write_command(&app, line, sizeof line);
     assert_int_equal(read_command(line, &options), OPTIONS_RUN);
     assert_true(options.room);
+    assert_true(options.fresh); /* settings that were kept are not defaults */
     assert_memory_equal(&options.settings, &app.settings, sizeof app.settings);
     assert_true(view_camera_read(options.camera, &camera));
     assert_memory_equal(&camera, &app.camera, sizeof camera);
@@ -138,7 +139,7 @@ static void a_camera_that_moves_is_not_in_the_command(void **state)
     app.follow = FOLLOW_TOUR;
     controls_set_defaults(&app.settings);
     app_write_command(&app, line, sizeof line);
-    assert_string_equal(line, "sluice-view scene.gltf");
+    assert_string_equal(line, "sluice-view scene.gltf --fresh");
 }
 
 static void wrong_cameras_are_refused(void **state)

@@ -113,6 +113,9 @@ echo damaged >"$recent" && open_viewer --fresh && xdotool key ctrl+q && ended_we
     open_viewer && xdotool key ctrl+q && ended_well && grep -q "view-recent.list is damaged: it is" err &&
     [ "$(cat "$recent.damaged")" = damaged ]
 fact a_damaged_list_of_recent_files_is_set_aside_but_for_fresh
+kept=$(cat config/sluice/view-*.settings) && open_viewer --fresh --budget 77 && sleep 1 && xdotool key ctrl+q && ended_well &&
+    [ "$kept" = "$(cat config/sluice/view-*.settings)" ]
+fact fresh_leaves_the_settings_that_were_kept
 mkdir many
 for i in {1..5000}; do printf 'P6 2 2 255\n%012d' 0 >"many/$i.ppm"; done
 open_viewer many && xdotool key ctrl+q && ended_well

@@ -131,18 +131,17 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick)
 
 void app_write_command(const struct view_app *app, char *text, size_t size)
 {
-    char options[4096], camera[160], b[2048] = "";
+    char options[4096], camera[160], cursor[32] = "", b[2048] = "";
     const bool played = app->facts.borrows; /* a recording */
     const bool stands = app->stage && !played && app->follow == FOLLOW_NOTHING;
+    if (played && app->facts.played_frame > 0)
+        snprintf(cursor, sizeof cursor, " --cursor %u", app->facts.played_frame);
     controls_write_command(&app->settings, options, sizeof options);
     if (app->settings.compared == VIEW_WITH_B)
         sets_write(&app->settings, &app->b, b, sizeof b);
-    snprintf(text, size, "%s%s%s%s%s%s", app->program, options, b[0] ? " --b " : "", b,
+    snprintf(text, size, "%s%s%s%s%s%s%s --fresh", app->program, options, b[0] ? " --b " : "", b,
              stands ? " --camera " : "",
-             stands ? view_camera_write(&app->camera, camera, sizeof camera) : "");
-    const size_t length = strlen(text);
-    if (played && app->facts.played_frame > 0)
-        snprintf(text + length, size - length, " --cursor %u", app->facts.played_frame);
+             stands ? view_camera_write(&app->camera, camera, sizeof camera) : "", cursor);
 }
 
 void app_copy_command(struct view_app *app)

@@ -155,7 +155,7 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick);
 /** Moves the camera before a surface that has a tile of a texture. */
 void app_look_at_tile(struct view_app *app, uint32_t texture, const SluiceTile *tile);
 /** Writes the command line that opens the same scene with the same settings. The camera is part of
- *  the command unless it moves by itself. */
+ *  the command unless it moves by itself. Settings that were kept do not act on the command. */
 void app_write_command(const struct view_app *app, char *text, size_t size);
 void app_copy_command(struct view_app *app);
 /** Ends the demonstration of the budget, if it runs, and restores the budget from before. */

@@ -79,7 +79,7 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         {OPTION_FLAG, "still", .value = &o->still,
          .help = "the camera stands still until the user moves it"},
         {OPTION_FLAG, "fresh", .value = &o->fresh,
-         .help = "ignore the settings kept from earlier runs"},
+         .help = "ignore the settings kept from earlier runs, and keep none"},
         {OPTION_TEXT, "cache", "DIR", "($XDG_CACHE_HOME/sluice, ~/.cache/sluice)", &o->cache,
          "folder for generated pictures and tile stores"},
         option_validation(&o->validation),

@@ -604,12 +604,9 @@ static void read_settings(struct viewer *v)
         recent_read(v->recent_path, &v->app.browser.recent);
     else
         v->recent_path[0] = '\0';
-    if (o->headless || !settings_file_path(scene, v->settings_path, sizeof v->settings_path)) {
+    if (o->headless || o->fresh ||
+        !settings_file_path(scene, v->settings_path, sizeof v->settings_path)) {
         v->settings_path[0] = '\0';
-        begin_b(v, false);
-        return;
-    }
-    if (o->fresh) {
         begin_b(v, false);
         return;
     }

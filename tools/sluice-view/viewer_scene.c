@@ -161,13 +161,14 @@ static void change_settings(struct viewer *v, const struct file_list *paths,
     memcpy(before->bookmarks, app->bookmarks, sizeof app->bookmarks);
     memcpy(before->bookmark_set, app->bookmark_set, sizeof app->bookmark_set);
     memcpy(before->path, v->settings_path, sizeof before->path);
+    if (v->settings_path[0])
+        settings_file_write(v->settings_path, app);
+    memset(app->bookmark_set, 0, sizeof app->bookmark_set); /* they are places of that scene */
     if (!v->settings_path[0])
         return;
-    settings_file_write(v->settings_path, app);
     settings_file_path(paths->count > 0 ? paths->paths[0] : "", v->settings_path,
                        sizeof v->settings_path);
-    memset(app->bookmark_set, 0, sizeof app->bookmark_set);
-    if (v->options->fresh || files_size(v->settings_path) == 0)
+    if (files_size(v->settings_path) == 0)
         return;
     controls_set_defaults(&app->settings);
     controls_set_defaults(&app->b);
