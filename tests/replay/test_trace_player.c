@@ -455,6 +455,73 @@ static void questions_take_no_memory(void **state)
     trace_buffer_free(&trace);
 }
 
+static void check_create_refused(SluiceTracePlayerCreateInfo info)
+{
+    char message[200] = "";
+    SluiceTracePlayer *player = (void *)message;
+    info.log = (SluiceLogCallback){message, note_message};
+    CHECK_RESULT(sluiceCreateTracePlayer(&info, &player), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_null(player);
+    assert_true(message[0]);
+}
+
+static void wrong_sizes_and_settings_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    struct trace_buffer trace = record_run(6);
+    struct failing_allocator memory;
+    failing_allocator_init(&memory, UINT64_MAX);
+    SluiceAllocationCallbacks half = memory.callbacks;
+    half.pfnFree = NULL;
+    const SluiceTracePlayerCreateInfo good = {
+        .structSize = sizeof good, .pData = trace.data, .size = trace.size};
+    SluiceTracePlayerCreateInfo info = good;
+    info.structSize = 0;
+    check_create_refused(info);
+    info = good;
+    info.tileEventCapacity = SLUICE_MAX_TILE_EVENTS + 1;
+    check_create_refused(info);
+    info = good;
+    info.pAllocator = &half;
+    check_create_refused(info);
+    assert_int_equal(memory.live_count, 0);
+
+    SluiceTracePlayer *player = open_player(&trace);
+    play_to(player, 50);
+    const SluiceTracePlayerState before = state_of(player);
+    SluiceTraceCall call = {.structSize = sizeof call - 1};
+    SluiceTracePlayerState wrong = {.structSize = 1};
+    CHECK_RESULT(sluiceGetNextTraceCall(player, &call), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceGetTracePlayerState(player, &wrong), SLUICE_ERROR_INVALID_ARGUMENT);
+    const SluiceTracePlayerState after = state_of(player);
+    check_same_state(&before, &after);
+    sluiceDestroyTracePlayer(player);
+    trace_buffer_free(&trace);
+}
+
+static void an_error_of_the_writer_of_a_checkpoint_is_returned_and_the_player_goes_on(void **state)
+{
+    (void)state;
+    struct trace_buffer trace = record_run(3);
+    SluiceTracePlayer *player = open_player(&trace);
+    play_to(player, 100);
+    struct trace_buffer whole = checkpoint_of(player);
+    for (size_t full_at = 0; full_at < whole.size; full_at += 61) {
+        struct trace_buffer cut;
+        const SluiceRecordWriter writer = trace_buffer_writer(&cut);
+        cut.full_at = full_at;
+        CHECK_RESULT(sluiceWriteTraceCheckpoint(player, &writer), SLUICE_ERROR_IO);
+        assert_int_equal(state_of(player).eventCount, 100);
+        trace_buffer_free(&cut);
+    }
+    while (next_of(player).kind != SLUICE_TRACE_CALL_NONE)
+        CHECK_OK(sluicePlayTraceCall(player));
+    assert_true(state_of(player).decisionHash == state_of(player).recordedHash);
+    trace_buffer_free(&whole);
+    sluiceDestroyTracePlayer(player);
+    trace_buffer_free(&trace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -469,6 +536,8 @@ int main(void)
         cmocka_unit_test(a_damaged_checkpoint_is_refused_and_changes_nothing),
         cmocka_unit_test(every_refused_allocation_is_survived),
         cmocka_unit_test(questions_take_no_memory),
+        cmocka_unit_test(wrong_sizes_and_settings_are_refused_and_change_nothing),
+        cmocka_unit_test(an_error_of_the_writer_of_a_checkpoint_is_returned_and_the_player_goes_on),
     };
     return RUN_TESTS(tests);
 }
