@@ -10,7 +10,7 @@
 /** A ring of the last frames. A zeroed struct is empty. */
 struct half_series {
     float values[HALF_TIMES_MOST]; ///< milliseconds
-    uint64_t count;                ///< so far
+    uint64_t count;                ///< number of frames so far
 };
 
 struct half_times {
@@ -18,9 +18,9 @@ struct half_times {
 };
 
 void half_series_add(struct half_series *series, double seconds);
-/** Returns how many of the last `most` frames are known. */
+/** Number of known frames among the last `most`. */
 uint32_t half_series_count(const struct half_series *series, uint32_t most);
-/** Returns the median of the last `most` frames in milliseconds. Negative: none is known. */
+/** Returns the median over the last `most` frames, in milliseconds. Negative: no frame is known. */
 double half_series_median(const struct half_series *series, uint32_t most);
 
 #endif /* SLUICE_VIEW_HALF_TIMES_H */

@@ -4,12 +4,13 @@
 
 #include "panels.h"
 
-/** All levels side by side, a square per tile, with holes where nothing is resident. */
+/** Draws all levels side by side, with a square per tile and holes for missing tiles. */
 void inspector_draw_levels(struct view_app *app, uint32_t texture);
-/** Feedback as it was read back, wanted and resident levels, missing ones, and how often tiles were
- *  loaded: maps of squares per region or tile of level 0. */
+/** Draws maps with a square per region or tile of level 0: feedback as read back, wanted, resident
+ *  and missing levels, and numbers of loads. */
 void inspector_draw_maps(struct view_app *app, uint32_t texture);
-/** The tile under the mouse, or else at the point that was inspected, if it is of this texture. */
+/** Draws the tile under the mouse, or otherwise at the inspected point, if it is on this texture.
+ */
 void inspector_draw_tile(const struct view_app *app, uint32_t texture);
 
 #endif /* SLUICE_VIEW_INSPECTOR_PARTS_H */

@@ -1,12 +1,12 @@
-/** Scenes from files. */
+/** Reads scenes from files. */
 #ifndef SLUICE_VIEW_SCENE_IMPORT_H
 #define SLUICE_VIEW_SCENE_IMPORT_H
 
 #include "scene_data.h"
 
-/** Fills a zeroed scene; reads glTF, OBJ and what else Assimp reads. `cache`: folder for baked
- * pictures. `wait`: until all pictures are baked. Says on stderr what is wrong, and which images
- * are left out. */
+/** Fills a zeroed scene from glTF, OBJ or another format that Assimp reads. `cache`: folder for
+ * baked pictures. `wait`: waits until all pictures are baked. Reports faults, and images that are
+ * left out, on stderr. */
 bool scene_import(const char *path, const char *cache, bool wait, struct scene_data *scene);
 
 #endif /* SLUICE_VIEW_SCENE_IMPORT_H */
