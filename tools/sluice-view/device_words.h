@@ -7,10 +7,11 @@
 #define DEVICE_QUIRKS 10u
 #define DEVICE_WORDS 200u
 
-/** Writes a sentence for each quirk that matters in a mode. Returns how many. */
+/** Writes a sentence for each quirk that applies in a mode. Returns their number. */
 uint32_t device_quirks(const SluiceVulkanDeviceCapabilities *capabilities, SluiceResidencyMode mode,
                        char quirks[DEVICE_QUIRKS][DEVICE_WORDS]);
-/** Writes why a streamer of so many textures has a mode. `asked`: may be AUTO. Returns `words`. */
+/** Writes why a streamer of `texture_count` textures has a mode. `asked`: mode requested at
+ * creation, may be AUTO. Returns `words`. */
 const char *device_mode_reason(const SluiceVulkanDeviceCapabilities *capabilities,
                                SluiceResidencyMode asked, SluiceResidencyMode mode,
                                uint32_t texture_count, char words[DEVICE_WORDS]);

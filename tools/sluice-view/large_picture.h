@@ -1,5 +1,4 @@
-/** A screenshot at twice the resolution of the window: the scene is drawn once more in one frame.
- */
+/** A screenshot at twice the resolution of the window. One frame draws the scene once more. */
 #ifndef SLUICE_VIEW_LARGE_PICTURE_H
 #define SLUICE_VIEW_LARGE_PICTURE_H
 
@@ -8,16 +7,16 @@
 struct large_picture {
     struct target target;
     struct gpu_buffer pixels;
-    char path[4096]; ///< "": none is drawn
+    char path[4096]; ///< file to write; "": no screenshot is drawn
 };
 
-/** Prepares a picture of this size, which the next frame draws. False, with a line on stderr, if
- *  the device has no such images or no memory; nothing is left then. */
+/** Prepares a screenshot, which the next frame draws. False, with a line on stderr, if the device
+ * has no images of this size or no memory. Frees everything on failure. */
 bool large_picture_begin(const struct gpu *gpu, uint32_t width, uint32_t height, const char *path,
                          struct large_picture *large);
-/** Waits for the frame and writes the file. Nothing is left. */
+/** Waits for the frame, writes the file, and frees everything. */
 bool large_picture_end(struct frames *frames, struct large_picture *large);
-/** No frame may be in flight. A zeroed struct is fine. */
+/** Frees a screenshot without writing it. No frame may be in flight. A zeroed struct is allowed. */
 void large_picture_drop(const struct gpu *gpu, struct large_picture *large);
 
 #endif /* SLUICE_VIEW_LARGE_PICTURE_H */

@@ -1,4 +1,4 @@
-/** Recordings in the place of scenes: the part that needs no device. */
+/** Recordings shown instead of scenes: the part that needs no device. */
 #ifndef SLUICE_VIEW_SCENE_PLAYED_H
 #define SLUICE_VIEW_SCENE_PLAYED_H
 
@@ -6,9 +6,9 @@
 #include "scene_data.h"
 #include "stage.h"
 
-/** Plays the recording once. Says on stderr why it failed. */
+/** Opens a recording, and plays it once. False, with a line on stderr, on failure. */
 bool scene_played_open(const char *path, struct scene_data *scene);
-/** Fills the textures of a stage. NULL without memory. To be freed. */
+/** Returns the textures of a stage; release them by free. NULL without memory. */
 struct stage_texture *scene_played_textures(const struct played *played);
 
 #endif /* SLUICE_VIEW_SCENE_PLAYED_H */

@@ -1,4 +1,4 @@
-/** The edges of a scene's triangles as lines over the picture. */
+/** Edges of a scene's triangles, drawn as lines over the picture. */
 #ifndef SLUICE_VIEW_STAGE_LINES_H
 #define SLUICE_VIEW_STAGE_LINES_H
 
@@ -12,13 +12,14 @@ struct stage_lines {
     VkPipeline pipeline;
 };
 
-/** `info`: target, layout and vertex input of the scene. Says on stderr what failed. */
+/** Creates lines. `info`: target, layout and vertex input of the scene. False, with a line on
+ * stderr, on failure. */
 bool stage_lines_create(const struct gpu *gpu, const struct scene_data *scene,
                         const struct draw_pipeline_info *info, struct stage_lines *lines);
-/** No frame may be in flight. A zeroed struct is fine. */
+/** Destroys the lines. No frame may be in flight. A zeroed struct is allowed. */
 void stage_lines_destroy(const struct gpu *gpu, struct stage_lines *lines);
-/** In a render pass. Sets, vertices and push constants are those of the scene; the buffer of
- *  indices is another one afterwards. */
+/** Records the lines. Call in the scene's render pass, with its sets, vertices and push constants
+ *  bound. Binds another index buffer. */
 void stage_lines_record(const struct stage_lines *lines, VkCommandBuffer commands);
 
 #endif /* SLUICE_VIEW_STAGE_LINES_H */

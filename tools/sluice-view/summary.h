@@ -15,7 +15,7 @@ struct summary {
 
 /** Adds the latest frame of the facts. */
 void summary_add(struct summary *summary, const struct view_facts *facts);
-/** Prints a figure per line, by the names that sluice-tradeoff has. Sorts the rings. */
+/** Prints one figure per line, under the names of sluice-tradeoff. Sorts the rings. */
 void view_summary_print(struct summary *summary, const struct view_facts *facts);
 
 #endif /* SLUICE_VIEW_SUMMARY_H */

@@ -1,4 +1,4 @@
-/** Draws the triangles of the user interface, and pictures in it, into a render pass. */
+/** Draws the triangles and pictures of the user interface in a render pass. */
 #ifndef SLUICE_VIEW_UI_DRAW_H
 #define SLUICE_VIEW_UI_DRAW_H
 
@@ -25,19 +25,19 @@ struct ui_drawing {
     struct ui_draw_slot slots[UI_DRAW_SLOTS];
 };
 
-/** `target`: any with one sample; its render pass is compatible with all others. RGBA texels of the
- *  font. Says on stderr what failed. */
+/** Creates a drawing. `target`: any target with one sample; render passes of all targets are
+ *  compatible. `font`: RGBA texels. False, with a line on stderr, on failure. */
 bool ui_drawing_create(const struct gpu *gpu, const struct target *target, const uint8_t *font,
                        uint32_t font_width, uint32_t font_height, struct ui_drawing *drawing);
-/** A zeroed struct is fine. No frame may be in flight. */
+/** Destroys the drawing. No frame may be in flight. A zeroed struct is allowed. */
 void ui_drawing_destroy(struct ui_drawing *drawing);
 
-/** Takes the geometry and the views of UI_TEXTURE_PICTURE and later ones (VK_NULL_HANDLE: the font
- *  instead) into a slot whose frame is complete. The views' images must be in
+/** Copies the geometry and views into a slot whose frame is complete. `views`: views from
+ *  UI_TEXTURE_PICTURE on; VK_NULL_HANDLE draws the font instead. Their images must be in
  *  SHADER_READ_ONLY_OPTIMAL when they are drawn. */
 bool ui_drawing_prepare(struct ui_drawing *drawing, uint32_t slot,
                         const struct ui_geometry *geometry, const VkImageView *views);
-/** Records the draws of a slot, within the render pass. */
+/** Records the draws of a slot. Call within the render pass. */
 void ui_drawing_record(const struct ui_drawing *drawing, uint32_t slot,
                        const struct ui_geometry *geometry, VkCommandBuffer commands);
 

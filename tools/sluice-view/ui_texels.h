@@ -13,17 +13,17 @@ struct ui_texels {
     bool filled;  ///< the image holds texels
 };
 
-/** Creates it, or another one if the size differs. Then it waits for the queue, and the image is
- *  empty. Says on stderr what failed. */
+/** Creates the image. If the size differs, waits for the queue and replaces the image by an empty
+ * one. False, with a line on stderr, on failure. */
 bool ui_texels_fit(const struct gpu *gpu, uint32_t width, uint32_t height,
                    struct ui_texels *texels);
-/** A zeroed struct is fine. No frame may be in flight. */
+/** Destroys the image. No frame may be in flight. A zeroed struct is allowed. */
 void ui_texels_destroy(struct ui_texels *texels);
-/** Records the copy to the image if the texels changed, outside a render pass. Do not write the
- *  staging buffer before that frame is complete. */
+/** Records a copy to the image if the texels changed. Call outside a render pass. Do not write the
+ *  staging buffer before the frame is complete. */
 void ui_texels_record(struct ui_texels *texels, VkCommandBuffer commands);
-/** Records the layout of an image `before` a copy of all of its texels, or after it, for shaders of
- *  fragments. */
+/** Records a layout transition: `before` a copy of all texels, or after it, for fragment shaders.
+ */
 void ui_texels_record_layout(VkCommandBuffer commands, VkImage image, bool before);
 
 #endif /* SLUICE_VIEW_UI_TEXELS_H */
