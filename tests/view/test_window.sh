@@ -125,6 +125,10 @@ open_viewer many && picture early.png shift+F12 && until_true 3 has_moved &&
     xdotool key Escape && until_true 10 copies '^sluice-view --room --size' &&
     xdotool key ctrl+q && ended_well
 fact loading_says_how_far_it_is_and_escape_opens_the_room_instead
+echo '2 drop none.glb' >drops
+open_viewer --script drops many && until_true 20 copies '^sluice-view --room --size' && grep -q none.glb err &&
+    xdotool key ctrl+q && ended_well
+fact a_file_that_cannot_be_opened_while_the_first_scene_is_loading_opens_the_room
 # A thread reads the scene again, and that of B: F12 writes meanwhile what was shown before. V draws a divider.
 printf 'v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n' >slow.obj
 { sed 's/v 0 1 0/v 0.5 1 0/' slow.obj && yes '# a line that takes time to read, as the others do' | head -n 3000000; } >long.obj

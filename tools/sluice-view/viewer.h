@@ -44,6 +44,7 @@ struct viewer {
     struct file_list paths;        ///< owned; paths of the scene; none: the room
     struct scene_load *load;       ///< load of the next scene; NULL: none
     bool loads_again;              ///< `load` reads the scene that is shown
+    bool loads_chosen;             ///< `load` reads a scene that was chosen in the window
     struct scene_load *other_load; ///< load of the scene of B; NULL: none
     struct scene_load *canceled;   ///< canceled loads whose threads have not ended
     char command[4200];            ///< program and paths for "copy command line", without options

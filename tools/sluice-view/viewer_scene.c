@@ -298,7 +298,7 @@ static bool begin_load(struct viewer *v, struct file_list *paths)
 {
     park_load(v);
     file_facts_begin(&v->app.file);
-    v->loads_again = false;
+    v->loads_again = v->loads_chosen = false;
     v->load = viewer_begin_load(v, paths, v->app.settings.threads);
     return v->load != NULL;
 }
@@ -331,8 +331,10 @@ bool viewer_open_scene(struct viewer *v)
 void viewer_reopen(struct viewer *v, struct file_list *paths)
 {
     struct scene_data scene;
-    if (v->window && (paths ? begin_load(v, paths) : begin_load_again(v)))
+    if (v->window && (paths ? begin_load(v, paths) : begin_load_again(v))) {
+        v->loads_chosen |= paths != NULL;
         return;
+    }
     if (!v->window)
         file_facts_begin(&v->app.file);
     if (v->window || !viewer_open_now(v, paths ? paths : &v->paths, &scene) ||
@@ -363,6 +365,16 @@ void viewer_reopen_if_needed(struct viewer *v)
     v->reopened = *now;
 }
 
+/* The scene of the command line was canceled for a file that cannot be opened. */
+static void open_room_instead(struct viewer *v)
+{
+    struct file_list room = {0};
+    if (v->stage || !v->loads_chosen)
+        return;
+    v->loads_chosen = false;
+    v->load = viewer_begin_load(v, &room, v->app.settings.threads);
+}
+
 static bool end_load(struct viewer *v)
 {
     struct scene_data scene;
@@ -371,10 +383,12 @@ static bool end_load(struct viewer *v)
     v->load = NULL;
     const bool opened = scene_load_end(load, &scene, &paths);
     v->app.said_seconds = 0;
-    if (!opened || !show(v, &scene, v->loads_again ? NULL : &paths))
+    if (!opened || !show(v, &scene, v->loads_again ? NULL : &paths)) {
         say_failed(v, &paths);
+        open_room_instead(v);
+    }
     files_finish(&paths);
-    return v->stage != NULL;
+    return v->stage || v->load;
 }
 
 bool viewer_watch_load(struct viewer *v)
