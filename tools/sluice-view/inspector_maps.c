@@ -4,7 +4,7 @@
 
 #define SECONDS 0.1
 
-/* Textures that follow another have its feedback. */
+/* Returns the texture whose feedback counts: a follower's primary. */
 static SluiceTextureId id_of_feedback(const struct stage *stage, uint32_t texture)
 {
     const uint32_t primary = stage_texture(stage, texture)->primary;

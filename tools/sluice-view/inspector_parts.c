@@ -6,14 +6,14 @@
 #include <stdio.h>
 
 #define MAP_WIDTH 82.0f
-#define MOST_SQUARES 64u /* along a side; of more tiles, some are shown */
+#define MOST_SQUARES 64u /* squares per side; with more tiles only some are shown */
 
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
 }
 
-/* Holes are dark. */
+/* Returns the color of a state. Missing tiles are dark. */
 static uint32_t color_of(SluiceTileState state)
 {
     switch (state) {
@@ -60,7 +60,7 @@ static void hover_tile(struct view_app *app, uint32_t texture, const SluiceTile 
         app_look_at_tile(app, texture, tile);
 }
 
-/* Squares side by side become one rectangle if they have one color and no gap between. */
+/* A run of adjacent squares of one color, drawn as one rectangle. */
 struct run {
     float left, top, right, bottom;
     uint32_t color;
@@ -86,7 +86,7 @@ static void add_square(struct run *run, const float r[4], float gap, uint32_t co
     run->right = r[0] + r[2];
 }
 
-/* The state is that of now, not of a moment ago. */
+/* Shows the tile under the mouse, with its present state. */
 static void hover_level(struct view_app *app, uint32_t texture,
                         const SluiceStreamedTextureLayout *layout, uint32_t level, float column,
                         float row)
@@ -104,7 +104,7 @@ static void hover_level(struct view_app *app, uint32_t texture,
         hover_tile(app, texture, &tile, state);
 }
 
-/* `r`: of the level; `over`: the mouse is over the canvas. */
+/* Draws a level into rectangle `r`. `over`: the mouse is over the canvas. */
 static void draw_level(struct view_app *app, uint32_t texture, uint32_t level, const float r[4],
                        bool over)
 {
@@ -129,7 +129,7 @@ static void draw_level(struct view_app *app, uint32_t texture, uint32_t level, c
         hover_level(app, texture, layout, level, (x - r[0]) / width, (y - r[1]) / height);
 }
 
-/* Level 0 to the left, the others in half the size each beside it, as mip chains are drawn. */
+/* Level 0 is on the left. Each following level has half the size. */
 void inspector_draw_levels(struct view_app *app, uint32_t texture)
 {
     if (!inspector_maps_update(&app->maps, app->stage, texture, app->seconds) ||
@@ -156,7 +156,7 @@ void inspector_draw_levels(struct view_app *app, uint32_t texture)
     }
 }
 
-/* Four stand side by side. */
+/* Maps, four per row. */
 enum map_kind { MAP_FEEDBACK, MAP_WANTED, MAP_RESIDENT, MAP_MISSING, MAP_LOADS, MAP_COUNT };
 
 static const struct {

@@ -23,7 +23,7 @@ static const char notes[] =
     "can\n"
     "stream.\n";
 
-/* Into a copy: files of settings stand below them. */
+/* Reads settings of B into a copy, to check them: files of settings are read later. */
 static bool read_b(const struct view_options *o)
 {
     struct view_settings b = o->settings;
@@ -33,7 +33,7 @@ static bool read_b(const struct view_options *o)
     return true;
 }
 
-/* Several numbers are a place. */
+/* Returns true if a text can be a camera's name or number: several numbers are a position. */
 static bool names_camera(const char *text)
 {
     return text[0] && (!strchr(text, ',') || text[strspn(text, "0123456789+-.eE, ")]);

@@ -4,7 +4,7 @@
 
 #define NEAREST 1e-3f
 
-/* Position before the camera: right, up, forward. */
+/* Returns a position in the camera's axes: right, up, forward. */
 static struct vec3 before_camera(const struct view_camera *camera, struct vec3 position)
 {
     const struct vec3 forward = view_camera_forward(camera), right = view_camera_right(camera);
@@ -13,7 +13,7 @@ static struct vec3 before_camera(const struct view_camera *camera, struct vec3 p
                          vec3_dot(to, forward)};
 }
 
-/* Pixels of a point before the camera. */
+/* Writes the pixel of a point in front of the camera. */
 static void project(const struct view_app *app, struct vec3 point, float xy[2])
 {
     const struct view_extent extent = view_camera_extent(&app->camera, app->width / app->height);

@@ -9,7 +9,7 @@
 
 #define MOST_ROWS 200u
 #define MOST_FAILURES 6u
-#define MOST_PATH 36u /* bytes */
+#define MOST_PATH 36u /* bytes of a path that are shown */
 
 static const char *const state_names[] = {"free",    "requested", "loading", "resident",
                                           "standby", "canceled",  "failed",  "given up"};
@@ -20,7 +20,7 @@ static const char *const reason_names[] = {"feedback", "added",   "taken up", "p
     "all reasons|feedback|added|taken up|prefetched|answered|retried|evicted|unmapped|called|"     \
     "removed"
 
-/* The end of a path, which names the file. */
+/* Returns the end of a path, which has the name of the file. */
 static const char *end_of(const char *path, const char **before)
 {
     const size_t length = strlen(path);
@@ -28,7 +28,7 @@ static const char *end_of(const char *path, const char **before)
     return length > MOST_PATH ? path + length - MOST_PATH : path;
 }
 
-/* Source, offset, result and a button. */
+/* Draws source, offset and result of a failed read, and a button to retry. */
 static void draw_failure(struct view_app *app, uint32_t texture)
 {
     const struct stage_texture *t = stage_texture(app->stage, texture);
@@ -95,7 +95,7 @@ struct event_list {
     float name_width;
 };
 
-/* The reason is far to the left, so that narrow panels show it. */
+/* Draws an event. The reason is on the left, so that narrow panels show it. */
 static void draw_row(void *user_data, uint32_t row)
 {
     const struct event_list *list = user_data;

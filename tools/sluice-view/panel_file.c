@@ -10,7 +10,7 @@
 #define LABEL_END 26u /* column of values in reports */
 #define MOST_LINES 40u
 
-/* "  format                  RGBA8": a label and a value. Other lines stay as they are. */
+/* Draws a line of the report. "  format                  RGBA8" has a label and a value. */
 static void draw_line(const char *line, size_t length)
 {
     char text[512], label[LABEL_END] = "";
@@ -36,7 +36,7 @@ static void draw_report(const struct file_facts *facts)
     }
 }
 
-/* The texture of a file that was opened; STAGE_NO_TEXTURE: none is of this file. */
+/* Returns the texture of the opened file; STAGE_NO_TEXTURE: none. */
 static uint32_t find_texture(const struct view_app *app)
 {
     for (uint32_t i = 0; app->stage && i < stage_texture_count(app->stage); i++)
@@ -45,7 +45,7 @@ static uint32_t find_texture(const struct view_app *app)
     return STAGE_NO_TEXTURE;
 }
 
-/* Scenes and pictures without tiles have no report. */
+/* Draws facts of an opened file without a report: a scene, or a picture without tiles. */
 static void draw_opened(const struct view_app *app)
 {
     const uint32_t texture = find_texture(app);
@@ -64,7 +64,8 @@ static void draw_opened(const struct view_app *app)
     }
 }
 
-/* Advice that the next message has, too, stands below that one. */
+/* Draws a message and its advice. Equal advice of consecutive messages is shown once, below the
+ * last. */
 static void draw_message(uint32_t number, const char *text)
 {
     char next[512];
@@ -77,7 +78,7 @@ static void draw_message(uint32_t number, const char *text)
     ui_space(3);
 }
 
-/* The oldest first: causes stand before what follows from them. */
+/* Draws messages, oldest first: causes come before their effects. */
 static void draw_messages(const struct file_facts *facts)
 {
     char text[512];

@@ -18,8 +18,8 @@ struct graph {
     const char *title, *unit;
     struct curve curves[4];
     uint32_t curve_count;
-    double least_top; ///< the axis ends there or higher
-    bool times;       ///< differs from run to run
+    double least_top; ///< smallest end of the axis
+    bool times;       ///< shows times, which differ between runs
 };
 
 static const struct graph graphs[] = {
@@ -95,13 +95,13 @@ static bool is_drawn(const struct view_facts *f, const struct curve *curve)
     return curve->series != SERIES_BUDGET || f->budget > 0;
 }
 
-/* Whole numbers above 10, but for times. */
+/* Returns the decimals of a value: none from 10 on. */
 static int digits_of(double value)
 {
     return value > 0 && value < 10 ? 1 : 0;
 }
 
-/* Points ago that values are shown of; 0: now. */
+/* Returns the age in points of the values in the titles; 0: now. */
 static uint32_t shown_age(const struct view_app *app)
 {
     const uint32_t age =
@@ -111,7 +111,7 @@ static uint32_t shown_age(const struct view_app *app)
     return age == UINT32_MAX ? 0 : age;
 }
 
-/* Another click near the line, which moves on, lets go. */
+/* Pins the values of a time. A click near the pinned line unpins them. */
 static void pin(struct view_app *app, enum history_span span, uint32_t age)
 {
     const uint32_t shown = shown_age(app);
@@ -174,7 +174,7 @@ static void draw_title(const struct view_app *app, const struct graph *graph)
     ui_text(UI_GRAY, "%s", graph->unit);
 }
 
-/* Points between equal neighbors are left out: the line is the same without them. */
+/* Draws a curve. Leaves out points between equal neighbors, which do not change the line. */
 static void draw_curve(const float *values, uint32_t count, const float r[4], double top,
                        uint32_t color)
 {
@@ -188,7 +188,7 @@ static void draw_curve(const float *values, uint32_t count, const float r[4], do
         xy[2 * points] = r[0] + r[2] - (float)age * per_age;
         xy[2 * points++ + 1] = r[1] + r[3] - values[age] * per_value;
     }
-    /* Whole pixels: other widths take twice the vertices. */
+    /* Whole pixels, since fractional widths take twice the vertices. */
     ui_polyline(xy, points, color, floorf(1.5f * ui_scale() + 0.5f));
 }
 
@@ -224,8 +224,7 @@ static void draw_graph(struct view_app *app, const struct graph *graph, enum his
     draw_hover(app, graph, r, span);
 }
 
-/* The last 3600 frames at most: what was before is in the curves. They are sorted some times per
- * second. */
+/* Draws quantiles of at most the last 3600 frames. Sorts them some times per second. */
 static void draw_quantiles(struct view_app *app, enum history_span span)
 {
     static const double parts[] = {0.5, 0.99};

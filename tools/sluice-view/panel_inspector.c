@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The texel that was inspected, as a rectangle of level 0. */
+/* Returns the inspected texel as a rectangle of level 0. */
 static SluiceTextureRect rect_of(const struct view_app *app, const struct stage_texture *texture)
 {
     SluiceTextureRect rect = {(uint32_t)(app->inspect.u * (float)texture->width),
@@ -21,7 +21,7 @@ static SluiceTextureRect rect_of(const struct view_app *app, const struct stage_
     return rect;
 }
 
-/* Sentences begin with the path, shortened if it is long. The name is above them. */
+/* Returns a sentence without the path at its begin. The panel shows the name above it. */
 static const char *without_path(const char *sentence, const struct stage_texture *texture)
 {
     const char *end = strstr(sentence, ": ");
@@ -46,7 +46,7 @@ static void draw_reason(const struct view_app *app, const struct stage_texture *
                  without_path(why.sentence, texture));
 }
 
-/* The last failed read of the file, if there is one. */
+/* Draws the last failed read of the file, if there is one. */
 static void draw_failure(const struct view_app *app, const struct stage_texture *texture)
 {
     const SluiceTileLoaderStatistics *reads = &app->facts.textures[app->selected].reads;

@@ -8,7 +8,7 @@
 #define KEY_COLUMNS 3
 #define MOST_ROWS 160u
 
-/** The actions that apply to what is shown. */
+/** Actions that apply to the shown scene or recording. */
 struct rows {
     const struct action *actions[MOST_ROWS];
     uint32_t count;
@@ -34,7 +34,7 @@ static const char *keys_of(const struct action *action)
     return action->shown ? action->shown : action->chord;
 }
 
-/* Lines of a group: its title and its keys. */
+/* Number of lines of a group: its title and its keys. */
 static uint32_t draw_row(const struct rows *rows, uint32_t i, float x)
 {
     if (begins_group(rows, i))
@@ -53,7 +53,7 @@ static uint32_t count_lines(const struct rows *rows)
     return lines;
 }
 
-/* The one page that may be larger: it was asked for. From column to column. */
+/* Draws the keys column by column. This page may be larger than other panels. */
 void panel_keys(struct view_app *app)
 {
     uint32_t next = 0;

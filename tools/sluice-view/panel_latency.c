@@ -7,14 +7,14 @@
 
 static const char *const stage_names[] = {"feedback", "queue", "read", "bind", "copy"};
 
-/* The largest wait of a bucket. */
+/* Returns the largest wait of a bucket. */
 static uint64_t bucket_end(const SluiceLoadStageCounts *stage, int bucket)
 {
     const uint64_t end = (1ull << bucket) - 1;
     return end < stage->frameMax && bucket + 1 < SLUICE_STAGE_BUCKET_COUNT ? end : stage->frameMax;
 }
 
-/* Frames within which this part of all leaves the stage, as far as buckets tell. */
+/* Returns the quantile of a stage in frames, rounded up to the end of its bucket. */
 static uint64_t stage_wait(const SluiceLoadStageCounts *stage, double part)
 {
     uint64_t sum = 0;
@@ -73,7 +73,7 @@ static void draw_stage(const SluiceLoadStageCounts *stage, const char *name)
     draw_bars(stage->buckets, 18);
 }
 
-/* Exact, where the stages have powers of 2. */
+/* Draws exact waits. The stages have buckets of powers of 2 only. */
 static void draw_whole(const struct tile_log *log)
 {
     uint64_t buckets[SLUICE_STAGE_BUCKET_COUNT] = {0};

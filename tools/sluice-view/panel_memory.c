@@ -63,7 +63,7 @@ static void hover_heap(struct view_app *app, uint32_t heap, const float r[4], fl
         draw_hover(app, &slot);
 }
 
-/* Returns whether the heap exists. */
+/* Draws a heap. False if it does not exist. */
 static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
 {
     float r[4];

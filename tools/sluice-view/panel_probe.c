@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A ray meets all triangles. While the camera moves, large scenes have no time for that. */
+/* A ray is tested against all triangles. Large scenes have no time for it while the camera moves.
+ */
 #define MOST_TRIANGLES 300000u
 
 static bool camera_moves(struct view_app *app)
@@ -41,7 +42,7 @@ void panel_probe_find(struct view_app *app)
     const struct stage_pick pick =
         stage_pick(app->stage, &app->camera, app->width / app->height, pixel.x, pixel.y);
     float texels[4];
-    /* The inspector is of A. */
+    /* The inspector describes A. */
     const bool of_b = app->other && !inspects && app_shows_b(app, app->mouse_x);
     const struct view_settings settings =
         of_b ? sets_of_second(&app->settings, &app->b) : app->settings;
@@ -72,7 +73,7 @@ static const char *reason_words(SluiceCoarseReason reason)
     }
 }
 
-/* "none" where nothing is. */
+/* Writes a level; "none" if nothing is resident. */
 static const char *level_words(uint32_t level, char *text, size_t size)
 {
     if (level == SLUICE_MIP_UNTOUCHED)

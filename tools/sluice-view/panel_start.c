@@ -10,7 +10,7 @@
 
 #define BUTTON_SECONDS 30.0
 
-/* A text that fits into a width: what is too long ends in dots. */
+/* Shortens a text to a width; a cut text ends in dots. */
 static const char *fit_text(const char *text, float width, char *fitted, size_t size)
 {
     size_t length = strlen(text);
@@ -35,7 +35,8 @@ static const char *sharp_words(const struct view_facts *f, char *text, size_t si
     return text;
 }
 
-/* Clicks on the line go to the picture behind, so ImGui does not know of the mouse over it. */
+/* Shows a hint by the mouse position: clicks go through the line to the picture, so ImGui does not
+ * report the hover. */
 static void hint_line(const struct view_app *app, const float placement[4])
 {
     const float left = placement[0] - placement[2] / 2, top = placement[1] - placement[3];
@@ -46,13 +47,13 @@ static void hint_line(const struct view_app *app, const float placement[4])
         return;
     ui_show_hint(
         stage_played(app->stage)
-            ? "The frame of the recording that is shown, and keys that move to others."
-            : "Size of all textures with all levels; how much of it is in memory; how much "
-              "of what is in view is as sharp as the camera asks for.");
+            ? "The shown frame of the recording, and keys that go to other frames."
+            : "Size of all textures with all levels; bytes in memory; part of the view that is as "
+              "sharp as the camera requests.");
 }
 
-/* The line that counts, and the line of hints below it. The panel's size is that of its texts now;
- * one that fits itself to them is late by a frame. */
+/* Draws the line of figures, and a line of hints below. Computes the panel's size from the present
+ * texts, since UI_PANEL_FIT follows one frame later. */
 static void draw_line(struct view_app *app)
 {
     char all[32], now[32], sharp[32], line[160] = "Opening the scene ...";
@@ -73,7 +74,7 @@ static void draw_line(struct view_app *app)
     if (app->said_seconds > 0)
         hints = app->said;
     app->line_width = 0;
-    if (app->stage && app->width < 620 * scale) /* the figures are in the corner, too */
+    if (app->stage && app->width < 620 * scale) /* narrow: the corner has the figures */
         return;
     hints = fit_text(hints, app->width - 6 * pad, fitted, sizeof fitted);
     ui_begin_large();
@@ -102,7 +103,7 @@ static void draw_buttons(struct view_app *app)
     const bool centered = app->width >= 1160 * scale;
     const float pivot[2] = {centered ? 0.5f : 0, 0};
     const float placement[4] = {centered ? app->width / 2 : 12 * scale, 12 * scale, 0, 0};
-    if (app->width < 900 * scale) /* no room beside the figures: the keys are left */
+    if (app->width < 900 * scale) /* narrow: no room beside the figures; keys do the same */
         return;
     if (ui_begin_panel("buttons", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         const uint32_t view = app->settings.view;
@@ -132,7 +133,7 @@ void panel_start(struct view_app *app)
         draw_buttons(app);
 }
 
-/* Resident, standby hatched, over the budget or everything. */
+/* Draws the bar: resident and standby (hatched) tiles, relative to the budget or to everything. */
 static void draw_bar(const struct view_app *app, float width, float height)
 {
     const struct view_facts *f = &app->facts;
@@ -156,7 +157,7 @@ static void draw_bar(const struct view_app *app, float width, float height)
             f->budget ? "the budget" : "all textures");
 }
 
-/* The scene's: what is missing, or not supported. */
+/* Draws messages of the scene: missing images, unsupported extensions. */
 static void draw_messages(const struct view_app *app)
 {
     char text[900] = "";

@@ -24,7 +24,7 @@ static void draw_seen(uint32_t color, double seconds)
         ui_table_cell(color, "%.0f min ago", seconds / 60);
 }
 
-/* Rows and sums have these columns. */
+/* Draws the cells of a row or of the sum. */
 static void draw_figures(const struct texture_row *r, uint32_t color)
 {
     char size[32];
@@ -78,7 +78,7 @@ static void write_csv(struct view_app *app)
     struct output_file *output = output_file_begin(CSV_FILE);
     if (!output)
         return;
-    app->table.next = 0; /* not the rows of a moment ago */
+    app->table.next = 0; /* gathers the rows again before writing */
     texture_table_update(&app->table, app->stage, &app->facts, app->texture_filter, NULL,
                          app->seconds);
     const bool good =
