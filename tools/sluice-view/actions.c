@@ -159,7 +159,8 @@ static void compare(struct view_app *app, int argument)
     app->keeps_b = false;
 }
 
-/* B stays open behind the picture of A, so that X comes back at once. V closes it. */
+/* Swaps A and B. Without a comparison B stays open, so that the next X returns at once. V closes B.
+ */
 static void swap(struct view_app *app, int argument)
 {
     (void)argument;

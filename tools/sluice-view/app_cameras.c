@@ -1,4 +1,4 @@
-/* Cameras of the file that is shown, and the path that is followed. */
+/* Cameras of the shown file, and the path that the camera follows. */
 #include "app.h"
 
 #include <ctype.h>

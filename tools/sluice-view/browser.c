@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Formats that Assimp reads are more; a path that is typed opens any. */
+/* Suffixes of listed files. Assimp reads more formats: a typed path opens any file. */
 #define READ_SUFFIXES                                                                              \
     ".gltf|.glb|.obj|.pbrt|.pbrt.gz|.trace|.fbx|.dae|.ply|.stl|.3ds|.store|.ntc|."                 \
     "tsv|" PICTURE_SUFFIXES
@@ -54,7 +54,7 @@ void browser_finish(struct browser *b)
     *b = (struct browser){.side = BROWSER_FILES};
 }
 
-/* Takes the name. */
+/* Adds an entry, and takes its name. */
 static bool add_entry(struct browser *b, char *name, bool is_folder, uint64_t size)
 {
     if (b->entry_count == b->entry_capacity) {
@@ -76,7 +76,7 @@ static bool look_at(struct browser *b, const char *name)
     char path[BROWSER_PATH + 512];
     struct stat about;
     snprintf(path, sizeof path, "%s/%s", b->folder, name);
-    if (stat(path, &about) != 0) /* gone, or a link that leads nowhere */
+    if (stat(path, &about) != 0) /* deleted meanwhile, or a dangling link */
         return true;
     const bool is_folder = S_ISDIR(about.st_mode);
     if (!is_folder && (!S_ISREG(about.st_mode) || !browser_reads(name)))
@@ -117,7 +117,7 @@ static bool read_folder(struct browser *b)
     return good;
 }
 
-/* Words of the filter must all be in the name, in any case. */
+/* Returns true if the name has all words of the filter, ignoring case. */
 static bool matches(const char *name, const char *filter)
 {
     char word[256];
@@ -215,7 +215,7 @@ static bool is_folder(const char *path)
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* "~/a", "/a" and "a/b": from home, from the root and from the folder. */
+/* Resolves a typed path: "~/a" from home, "/a" from the root, "a/b" from the folder. */
 static void write_typed(const struct browser *b, char *path, size_t size)
 {
     const char *home = getenv("HOME"), *typed = b->filter;

@@ -7,7 +7,8 @@ static uint8_t least(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Four texels become the finest of them. SLUICE_MIP_UNTOUCHED is the largest value there is. */
+/* Halves the map: 2 x 2 texels become the finest of them. SLUICE_MIP_UNTOUCHED is the largest
+ * value. */
 static void reduce(uint8_t *map, uint32_t *width, uint32_t *height)
 {
     const uint32_t columns = (*width + 1) / 2, rows = (*height + 1) / 2;
@@ -23,7 +24,7 @@ static void reduce(uint8_t *map, uint32_t *width, uint32_t *height)
     *height = rows;
 }
 
-/* A tile of a level is wanted as long as a request below it does not become coarser than it. */
+/* Counts the tiles of a level that stay requested when levels are added to the requests. */
 static void count_level(struct budget_need *need, const uint8_t *map, uint64_t count,
                         uint32_t level)
 {

@@ -24,7 +24,7 @@ struct vec3 view_camera_forward(const struct view_camera *camera)
                          -cosf(camera->yaw) * cosf(camera->pitch)};
 }
 
-/* Without the roll: visitors move along the horizon. */
+/* Returns the right axis without the roll, so that the camera moves along the horizon. */
 static struct vec3 level_right(const struct view_camera *camera)
 {
     return (struct vec3){cosf(camera->yaw), 0, sinf(camera->yaw)};
@@ -71,7 +71,7 @@ struct view_camera view_camera_of_axes(struct vec3 eye, struct vec3 forward, str
 {
     struct view_camera camera = view_camera_at(eye, vec3_add(eye, forward), lens->fov);
     forward = vec3_normalize(forward);
-    if (forward.x * forward.x + forward.z * forward.z < 1e-12f) /* straight up or down */
+    if (forward.x * forward.x + forward.z * forward.z < 1e-12f) /* looks straight up or down */
         camera.yaw = atan2f(up.x, -up.z) + (forward.y > 0 ? PI : 0.0f);
     camera.pitch = asinf(fmaxf(-1.0f, fminf(1.0f, forward.y)));
     const struct vec3 right = vec3_normalize(vec3_cross(forward, up));

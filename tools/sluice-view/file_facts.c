@@ -31,7 +31,7 @@ void file_facts_begin(struct file_facts *facts)
     facts->first_message = messages_count();
 }
 
-/* Without the name of a picture in the file. */
+/* Keeps the path, without the "#name" of a picture in the file. */
 static void take_path(struct file_facts *facts, const char *path)
 {
     snprintf(facts->path, sizeof facts->path, "%s", path);

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define FRAMES_BETWEEN 15u
-#define REST 3.0 /* times the time that the last map took */
+#define REST 3.0 /* pause after a map, as a multiple of its computing time */
 
 static void fail(struct flip_map *m, const char *why)
 {

@@ -193,7 +193,7 @@ static bool check_accessor(struct gltf_file *file, uint32_t i)
            check_sparse(file, member(file->lists[GLTF_ACCESSORS].items[i], "sparse"), where, &a);
 }
 
-/* Components that can be; 0: any. */
+/* Returns true if an attribute may have the accessor's components. */
 static bool fits(const char *attribute, const struct gltf_accessor *a)
 {
     static const struct {
@@ -305,7 +305,7 @@ static bool check_children(struct gltf_file *file, uint32_t i, uint32_t *parents
     return true;
 }
 
-/* Each has one parent at most, so what goes round never comes to a root. */
+/* Checks the depth of a node. Each node has at most one parent, so a cycle never reaches a root. */
 static bool check_depth(struct gltf_file *file, uint32_t i, const uint32_t *parents)
 {
     uint32_t depth = 0;
@@ -347,7 +347,7 @@ static bool check_nodes(struct gltf_file *file)
     return good;
 }
 
-/* An array of indices. */
+/* Checks an array of indices. */
 static bool check_numbers(struct gltf_file *file, const cJSON *array, const char *where,
                           enum gltf_kind kind)
 {
@@ -412,7 +412,7 @@ static bool check_scene(struct gltf_file *file, uint32_t i)
                          place(GLTF_SCENES, i, where), GLTF_NODES);
 }
 
-/* Meshes that are packed cannot be read; everything else is drawn without the extension. */
+/* Refuses required extensions that pack meshes. Other extensions are ignored. */
 static bool check_extensions(struct gltf_file *file)
 {
     static const char *const refused[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",

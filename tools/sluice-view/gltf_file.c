@@ -176,7 +176,7 @@ uint8_t *gltf_decode_data_uri(const char *uri, size_t *size)
     return bytes;
 }
 
-/* Writes `words`, and the system's reason if there is one. */
+/* Writes `words`, and the reason of the system unless `error` is 0. Returns false. */
 static bool refuse(char cause[GLTF_CAUSE_SIZE], const char *words, int error)
 {
     snprintf(cause, GLTF_CAUSE_SIZE, "%s%s%s", words, error ? ": " : "",
@@ -236,7 +236,7 @@ static bool split(struct gltf_file *file, struct gltf_bytes *json)
     return true;
 }
 
-/* Items are linked; here they are reached by number. */
+/* Lists the items of a kind, since cJSON links them and indices need numbers. */
 static bool list(struct gltf_file *file, enum gltf_kind kind)
 {
     const cJSON *array = cJSON_GetObjectItemCaseSensitive(file->json, kind_names[kind]);
