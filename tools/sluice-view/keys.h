@@ -1,10 +1,10 @@
-/** Names and numbers of keys, for input events, scripts and the page that lists them. */
+/** Names and numbers of keys, for input events, scripts and the page of keys. */
 #ifndef SLUICE_VIEW_KEYS_H
 #define SLUICE_VIEW_KEYS_H
 
 #include <stddef.h>
 
-/** Printable keys are their ASCII capitals. The others are numbered as GLFW numbers them. */
+/** Keys. Printable keys have the number of their ASCII capital, other keys the number of GLFW. */
 enum view_key {
     VIEW_KEY_NONE = 0,
     VIEW_KEY_SPACE = 32,
@@ -35,13 +35,13 @@ enum view_key {
 
 enum view_modifier { VIEW_SHIFT = 1, VIEW_CONTROL = 2, VIEW_ALT = 4 };
 
-/** A key with the modifiers that are held: "Shift+R", "Ctrl-Q", "F1", "space". */
+/** A key with held modifiers: "Shift+R", "Ctrl-Q", "F1", "space". */
 struct view_chord {
     int key;
     unsigned modifiers; ///< enum view_modifier
 };
 
-/** False if `text` names no key. */
+/** Reads a chord. False if `text` names no key. */
 int view_chord_read(const char *text, struct view_chord *chord);
 
 #endif /* SLUICE_VIEW_KEYS_H */

@@ -1,5 +1,5 @@
 /**
- * Scripts of events: a line has the number of a frame, an event and what the event needs.
+ * Scripts of events. A line has a frame number, an event and its arguments.
  *
  *     40 key 3
  *     60 click 312 200
@@ -10,7 +10,7 @@
  * Events are key CHORD, hold CHORD FRAMES, type TEXT, hover X Y, click X Y [left|right|middle],
  * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, set b NAME VALUE, do
  * ACTION, record FILE, frame NUMBER (of a recording), screenshot FILE, reset and quit. Empty lines
- * and what follows '#' are passed over.
+ * and text after '#' are ignored.
  */
 #ifndef SLUICE_VIEW_SCRIPT_H
 #define SLUICE_VIEW_SCRIPT_H
@@ -28,17 +28,17 @@ enum script_kind {
     SCRIPT_DROP,   ///< text
     SCRIPT_SET,    ///< text, value
     SCRIPT_SET_B,  ///< text, value
-    SCRIPT_DO,     ///< text: texture_actions.h
-    SCRIPT_RECORD, ///< text: a file
-    SCRIPT_FRAME,  ///< number: of a recording that is shown
-    SCRIPT_RESET,  ///< settings, panels and camera as at first
+    SCRIPT_DO,     ///< text: an action of texture_actions.h
+    SCRIPT_RECORD, ///< text: path of the recording
+    SCRIPT_FRAME,  ///< number: frame of the shown recording
+    SCRIPT_RESET,  ///< restores settings, panels and camera
     SCRIPT_SCREENSHOT,
     SCRIPT_QUIT
 };
 
-/** Input of one frame: a click is a move and two buttons. */
+/** One step of input. A click has three: a move and two buttons. */
 struct script_step {
-    uint32_t frame, order; ///< steps of a frame have the order of the file
+    uint32_t frame, order; ///< `order`: position in the file, for steps of one frame
     enum script_kind kind;
     int number;
     bool down;
@@ -51,14 +51,15 @@ struct script {
     size_t count, capacity, next;
 };
 
-/** False, with file, line and cause on stderr. Zero or finish the script before. */
+/** Reads a script, which must be zeroed or finished. False, with file, line and cause on stderr, on
+ *  failure. */
 bool script_read(const char *path, struct script *script);
-/** Reads a script from a text. `name` stands in messages. */
+/** Reads a script from a text. Messages begin with `name`. */
 bool script_parse(const char *name, const char *text, struct script *script);
 void script_finish(struct script *script);
-/** The next step of this frame; NULL when there is none left. */
+/** Returns the next step of a frame; NULL: no step is left. */
 const struct script_step *script_next(struct script *script, uint32_t frame);
-/** The last frame that a step is in. */
+/** Returns the last frame with a step. */
 uint32_t script_last_frame(const struct script *script);
 
 #endif /* SLUICE_VIEW_SCRIPT_H */

@@ -1,4 +1,4 @@
-/** Shaders of scenes, compiled again from their sources while the program runs. */
+/** Compiles the shaders of scenes from their sources while the program runs. */
 #ifndef SLUICE_VIEW_SHADER_FILES_H
 #define SLUICE_VIEW_SHADER_FILES_H
 
@@ -14,10 +14,10 @@ struct shader_code {
     size_t size;     ///< bytes
 };
 
-/** Why shaders cannot be compiled here; NULL if they can. `text` has room for a message. */
+/** Returns why shaders cannot be compiled here, written to `text`; NULL: they can. */
 const char *shader_files_missing(char *text, size_t size);
-/** Compiles all in a temporary folder, and waits for that. False, with the compiler's messages on
- *  stderr, if one failed; then there is nothing to finish. */
+/** Compiles all shaders in a temporary folder, and waits. False, with the compiler's messages on
+ *  stderr, if a shader failed: `code` needs no shader_files_finish then. */
 bool shader_files_compile(struct shader_code code[SCENE_SHADER_COUNT]);
 void shader_files_finish(struct shader_code code[SCENE_SHADER_COUNT]);
 

@@ -1,4 +1,4 @@
-/** Compiles what drivers compile late. */
+/** Compiles programs ahead that drivers compile at their first use. */
 #ifndef SLUICE_VIEW_TRACED_REHEARSAL_H
 #define SLUICE_VIEW_TRACED_REHEARSAL_H
 
