@@ -16,7 +16,7 @@ static uint64_t values[MOST];
 
 #define REAL(name) ((PFN_##name)find_real(#name))
 
-/* Through memory: ISO C has no conversion of dlsym's pointer to that of a function. */
+/* Copies through memory, since ISO C cannot convert dlsym's pointer to a function pointer. */
 static PFN_vkVoidFunction find_real(const char *name)
 {
     void *found = dlsym(RTLD_NEXT, name);

@@ -103,7 +103,7 @@ static void quads_write_together_and_as_often_as_their_probability_says(void **s
     }
     show_get()->app.settings.probability = 1;
     check_near(torn / 10);
-    /* six standard deviations of so many quads */
+    /* 6 standard deviations, and 1 % */
     const double quads = 10.0 * textured_count / 4, expected = quads * p;
     assert_true(fabs(count / 4.0 - expected) < 6 * sqrt(expected * (1 - p)) + 0.01 * expected);
 }

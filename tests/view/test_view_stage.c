@@ -164,7 +164,7 @@ static void check_tile(const struct view_probe *probe)
     assert_int_equal(probe->tile.y, (probe->texel[1] >> probe->resident) / layout.desc.tileHeight);
 }
 
-/* Checks at many places that the legend's level is that of the color. Places on the border of two
+/* Checks at many points that the legend's level matches the color. Points on the border of two
  * levels may differ. */
 static void check_levels(uint32_t view, uint32_t places[8])
 {

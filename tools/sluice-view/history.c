@@ -39,7 +39,7 @@ static float *point_at(const struct history *h, const struct history_ring *ring,
     return ring->values + (size_t)(number % HISTORY_POINTS) * h->series_count;
 }
 
-/* Two points become one, so that all of the time has room. The first is number 0. */
+/* Merges pairs of points, so that the whole time fits. The first point has number 0. */
 static void halve(const struct history *h, struct history_ring *ring)
 {
     for (uint64_t to = 0; to <= ring->last / 2; to++)

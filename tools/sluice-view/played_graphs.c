@@ -99,7 +99,7 @@ static double factor_of(const struct played *p, const struct played_graph *graph
     return curve->factor * p->begin.tileSize * (heaps ? p->begin.heapTileCapacity : 1u) / 1e6;
 }
 
-/* The largest value of the frames of each column, so peaks stay. */
+/* Finds the largest value per column, so that peaks stay visible. */
 static void find_peaks(const struct played *p, enum played_figure figure, uint32_t first,
                        uint32_t last, uint32_t columns, uint32_t *peaks)
 {
@@ -199,7 +199,7 @@ static void draw_title(const struct played *p, const struct played_graph *graph)
     ui_text(UI_GRAY, "%s", graph->unit);
 }
 
-/* The first frame at a time or later. */
+/* Returns the first frame at a time or later. */
 static uint32_t frame_at(const struct played *p, uint64_t time)
 {
     uint32_t low = 0, high = p->frame_count;
@@ -213,7 +213,7 @@ static uint32_t frame_at(const struct played *p, uint64_t time)
     return low < p->frame_count ? low : p->frame_count - 1;
 }
 
-/* The span around the cursor. */
+/* Finds the shown span around the cursor. */
 static void find_span(const struct view_app *app, uint32_t *first, uint32_t *last)
 {
     static const uint64_t seconds[] = {10, 60};

@@ -1,4 +1,4 @@
-/* Checkpoints of a recording, and how a frame is gone to. */
+/* Checkpoints of a recording, and jumps to frames. */
 #include "played_parts.h"
 
 #include <stdlib.h>
@@ -77,7 +77,7 @@ static bool make_point(struct played *p, uint32_t frame, struct played_point *po
     return made;
 }
 
-/* The first point stays: there is none before it. */
+/* The first checkpoint stays, since none is before it. */
 static void thin_out(struct played *p)
 {
     uint32_t kept = 0;
@@ -150,7 +150,7 @@ static bool restore(struct played *p, const struct played_point *point)
     return true;
 }
 
-/* The first call of a frame up to the first of the next one. */
+/* Plays from the first call of a frame up to the first call of the next frame. */
 static bool play_frame(struct played *p, uint64_t *calls)
 {
     const uint64_t end =

@@ -51,7 +51,7 @@ static int wrap_of(enum aiTextureMapMode mode)
     }
 }
 
-/* An image that cannot be opened is named. */
+/* Adds an image. Reports an image that cannot be opened. */
 static uint32_t add_image(struct import *import, const char *name, const int wraps[2])
 {
     char path[4096];
@@ -71,7 +71,7 @@ static uint32_t add_image(struct import *import, const char *name, const int wra
     return scene_images_add(import->scene, &named);
 }
 
-/* Assimp has coordinates with V up: v = 1 - V. The same with V down. */
+/* Converts a transform of Assimp, whose V points up (v = 1 - V), to V down. */
 static void read_transform(const struct aiMaterial *material, enum aiTextureType type, float m[6])
 {
     struct aiUVTransform t;
@@ -124,7 +124,7 @@ static void read_material(struct import *import, const struct aiMaterial *from,
     read_color_image(import, from, to);
 }
 
-/* For files other than glTF. */
+/* Takes materials of files other than glTF. */
 static bool take_materials(struct import *import)
 {
     const uint32_t count = import->from->mNumMaterials;
@@ -201,7 +201,7 @@ static void add_mesh(struct import *import, const struct aiMesh *mesh,
     part->index_count = scene->index_count - part->first_index;
 }
 
-/* Sums over the visits of all nodes. Assimp refuses circles; depth and sums are bounded here. */
+/* Sums over all visited nodes. Assimp refuses cycles. Depth and sums are bounded here. */
 struct sums {
     size_t vertices, indices, parts;
     unsigned visits;
@@ -236,7 +236,7 @@ static void visit_all(struct import *import, struct sums *sums)
     visit(import, import->from->mRootNode, &identity, sums, 0);
 }
 
-/* A camera of the file at a place of its path. `parent` is around its node. */
+/* Returns a camera of the file at a position and rotation. `parent`: matrix of its parent node. */
 static struct view_camera camera_of(const struct aiCamera *camera, struct aiVector3D position,
                                     const struct aiQuaternion *rotation,
                                     const struct aiMatrix4x4 *parent)
@@ -255,7 +255,7 @@ static struct view_camera camera_of(const struct aiCamera *camera, struct aiVect
                           fov > 0.2f && fov < 2.5f ? fov : 1.0f);
 }
 
-/* Keys of a channel are joined by straight lines; rotations take the nearest key before them. */
+/* Returns a camera at a time. Positions interpolate linearly; rotations take the previous key. */
 static struct view_camera camera_at_time(const struct aiCamera *camera,
                                          const struct aiNodeAnim *channel, double time,
                                          const struct aiMatrix4x4 *parent)
@@ -388,7 +388,8 @@ static void *import_file(void *user)
     return taken ? import : NULL;
 }
 
-/* Assimp recurses into what it reads: the stack is large, which costs only what is used of it. */
+/* Assimp recurses into its input, so the stack is large. Unused parts of the stack cost no memory.
+ */
 static bool import_on_thread(struct import *import)
 {
     pthread_attr_t attributes;

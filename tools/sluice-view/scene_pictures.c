@@ -45,7 +45,7 @@ static void say_scene(const char *path)
     text_say("sluice-view: %s is a scene: sluice-view %s", slash ? slash + 1 : path, path);
 }
 
-/* Pictures alone hang. Somebody who names the folder of one scene may want to see the scene. */
+/* Collects the pictures of a folder. Suggests the scene to the user if the folder has one. */
 static bool collect_folder(const char *path, struct file_list *files)
 {
     struct file_list found = {.speaker = files->speaker};
@@ -92,7 +92,7 @@ static void write_name(const char *path, char *name, size_t size)
         snprintf(name, size, "%s", slash ? slash + 1 : path);
 }
 
-/* Pictures without tiles are read from files alone: replaces such a URL by a copy. */
+/* Replaces the URL of a picture without tiles by a local copy, since only files can be baked. */
 static void copy_picture(const char *url, const char *cache, struct remote_session *session,
                          char **path)
 {
@@ -112,7 +112,7 @@ static void copy_picture(const char *url, const char *cache, struct remote_sessi
     }
 }
 
-/* Returns how many can be shown. */
+/* Opens all pictures. Returns the number that can be shown. */
 static uint32_t open_all(struct scene_data *scene, const char *cache, struct file_list *files,
                          uint32_t *images)
 {

@@ -28,7 +28,7 @@ bool sets_read(struct view_settings *set, const char *text, const char *speaker)
 void sets_write(const struct view_settings *a, const struct view_settings *b, char *text,
                 size_t size);
 /** Returns all settings of the second picture: shared settings from `a`, and the set of B. Outside
- *  view 8 and with a->compared VIEW_WITH_B, the set is that of `b`. Otherwise it follows `a`. */
+ *  view 8 and with a->compared VIEW_WITH_B, the set comes from `b`. Otherwise it follows `a`. */
 struct view_settings sets_of_second(const struct view_settings *a, const struct view_settings *b);
 /** Exchanges A and B. B stops following A. */
 void sets_swap(struct view_settings *a, struct view_settings *b);

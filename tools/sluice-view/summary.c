@@ -19,7 +19,7 @@ static int compare_values(const void *left, const void *right)
     return a < b ? -1 : a > b;
 }
 
-/* The value that so much of the frames do not exceed. */
+/* Returns the quantile `part` of the values. */
 static double quantile(const struct summary *s, float *values, double part)
 {
     const size_t count =

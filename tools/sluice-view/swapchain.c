@@ -155,7 +155,7 @@ void swapchain_destroy(struct swapchain *s)
     *s = (struct swapchain){0};
 }
 
-/* A suboptimal image is shown; the next frame gets a new swapchain. */
+/* Evaluates a result. A suboptimal image is shown, and the next frame gets a new swapchain. */
 static enum swapchain_outcome judge(struct swapchain *s, VkResult result, const char *call)
 {
     s->outdated = result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_OUT_OF_DATE_KHR;

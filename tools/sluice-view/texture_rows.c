@@ -102,7 +102,7 @@ static double key_of(const struct texture_row *r, enum texture_column column)
     }
 }
 
-/* Texts of the column, too, are before names. */
+/* A row with the text of the sorted column, which is compared before the name. */
 struct ordered {
     const char *text;
     struct texture_row row;
@@ -132,7 +132,7 @@ static const char *text_of(const struct texture_row *row, enum texture_column co
                                      : row->name;
 }
 
-/* Without memory the order stays. */
+/* Keeps the order without memory. */
 void texture_rows_sort(struct texture_row *rows, uint32_t count, enum texture_column column,
                        bool descending)
 {
@@ -148,7 +148,7 @@ void texture_rows_sort(struct texture_row *rows, uint32_t count, enum texture_co
     free(ordered);
 }
 
-/* In quotes, which double those in the text. */
+/* Writes a text in quotes, and doubles quotes within the text. */
 static void write_text(FILE *file, const char *text)
 {
     putc('"', file);

@@ -128,7 +128,7 @@ static void count_wait(uint64_t *counts, uint32_t wait)
     counts[wait < TILE_LOG_MOST_WAIT ? wait : TILE_LOG_MOST_WAIT]++;
 }
 
-/* Before `requested` of the tile is cleared. */
+/* Notes stages of a load. Call before tile->requested is cleared. */
 static void note_stages(struct tile_log *log, const struct tile_log_tile *tile,
                         const SluiceTileEvent *event)
 {

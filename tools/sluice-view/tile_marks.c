@@ -6,7 +6,7 @@
 #define HEADER_WORDS 4u
 #define MOST_EVENTS 256u
 #define EVENT_CAPACITY 32768u
-/* Explaining a tile takes about a microsecond: all textures are looked at in turns. */
+/* Limits per frame, since explaining a tile takes about a microsecond. Textures take turns. */
 #define EXPLAINED_PER_FRAME 1024u
 #define CELLS_PER_FRAME 65536u
 #define TILE_HEIGHT_SHIFT 16
@@ -22,7 +22,7 @@ struct mark_order {
     uint32_t index;
 };
 
-/** Time stamps of the last loads, a ring. */
+/** A tile: time stamps of its last loads, a ring. */
 struct mark_tile {
     uint64_t times[MARK_THRASH_LOADS];
     uint32_t count;
@@ -41,7 +41,7 @@ static int compare(const void *left, const void *right)
     return a->id < b->id ? -1 : a->id > b->id;
 }
 
-/* False if a texture is too large, or is none. */
+/* Computes sizes. False if a texture is too large or unknown. */
 static bool measure(struct tile_marks *m, const SluiceTextureId *ids)
 {
     m->word_count = (size_t)HEADER_WORDS * (m->texture_count + 1u);
@@ -126,7 +126,7 @@ static void take_events(struct tile_marks *m)
     } while (result == SLUICE_INCOMPLETE);
 }
 
-/* The tile of `level` over a tile of level 0. */
+/* Returns the tile of `level` that covers a level 0 tile. */
 static const struct mark_tile *tile_over(const struct tile_marks *m, const struct mark_texture *t,
                                          uint32_t x, uint32_t y, uint32_t level)
 {
@@ -167,14 +167,14 @@ static enum mark_reason explain(const struct tile_marks *m, const struct mark_te
     return mark_reason_of(why.reason);
 }
 
-/* The global mip bias is in what is requested: it is to be asked for. */
+/* Returns true if a global mip bias applies. Requested levels include the bias. */
 static bool is_biased(const struct tile_marks *m)
 {
     SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
     return sluiceGetStatistics(manager_of(m), &now) == SLUICE_SUCCESS && now.globalMipBias > 0;
 }
 
-/* Returns how many tiles were explained. */
+/* Writes the words of a texture. Returns the number of explained tiles. */
 static size_t write_words(struct tile_marks *m, const struct mark_texture *t, uint64_t now)
 {
     const uint32_t width = t->layout.minMipWidth, height = t->layout.minMipHeight;

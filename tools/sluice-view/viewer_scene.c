@@ -303,7 +303,8 @@ static bool begin_load(struct viewer *v, struct file_list *paths)
     return v->load != NULL;
 }
 
-/* The scene that is shown. What is being opened takes its place anyway. */
+/* Begins to open the shown scene again. Keeps a load that runs, since it replaces the scene anyway.
+ */
 static bool begin_load_again(struct viewer *v)
 {
     if (v->load)
