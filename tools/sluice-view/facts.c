@@ -271,7 +271,8 @@ void facts_update(struct view_facts *f, const struct stage *stage,
     else
         look_at_streamer(f, stage, settings);
     f->seconds += seconds;
-    f->frame_seconds = f->frame == 0 ? seconds : f->frame_seconds * 0.9 + seconds * 0.1;
+    const double took = f->real_seconds > 0 ? f->real_seconds : seconds;
+    f->frame_seconds = f->frame == 0 ? took : f->frame_seconds * 0.9 + took * 0.1;
     remember(f, seconds);
     f->frame++;
 }
