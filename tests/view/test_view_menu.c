@@ -139,11 +139,41 @@ static void every_key_that_does_something_is_in_the_menu(void **state)
     assert_true(found > count / 2);
 }
 
+static void a_panel_that_is_opened_by_its_key_is_seen_after_panels_were_hidden(void **state)
+{
+    static struct view_app app;
+    (void)state;
+    app_init(&app);
+    assert_true(actions_press(&app, 'H', 0));
+    assert_int_not_equal(app.settings.panels, 0);
+    assert_true(actions_press(&app, 'M', 0));
+    assert_true(app.open[PANEL_MEMORY]);
+    assert_int_equal(app.settings.panels, 0);
+}
+
+static void escape_closes_the_page_of_keys_and_the_menu_before_it_hides_panels(void **state)
+{
+    static const int pages[] = {PANEL_KEYS, PANEL_MENU};
+    static struct view_app app;
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        app_init(&app);
+        app_set_panel(&app, (enum app_panel)pages[i], true);
+        assert_true(actions_press(&app, VIEW_KEY_ESCAPE, 0));
+        assert_false(app.open[pages[i]]);
+        assert_int_equal(app.settings.panels, 0);
+        assert_true(actions_press(&app, VIEW_KEY_ESCAPE, 0));
+        assert_int_not_equal(app.settings.panels, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_menu_has_everything_with_a_key_and_shows_the_key),
         cmocka_unit_test(the_page_of_keys_has_every_key),
-        cmocka_unit_test(every_key_that_does_something_is_in_the_menu)};
+        cmocka_unit_test(every_key_that_does_something_is_in_the_menu),
+        cmocka_unit_test(a_panel_that_is_opened_by_its_key_is_seen_after_panels_were_hidden),
+        cmocka_unit_test(escape_closes_the_page_of_keys_and_the_menu_before_it_hides_panels)};
     return cmocka_run_group_tests(tests, draw_panels, end_panels);
 }

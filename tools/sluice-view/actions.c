@@ -396,6 +396,16 @@ void actions_run(struct view_app *app, const struct action *action)
         action->act(app, action->argument);
 }
 
+/* Esc closes the page of keys or the menu before it hides the panels. */
+static bool close_page(struct view_app *app)
+{
+    const bool shown =
+        app->settings.panels == 0 && (app->open[PANEL_KEYS] || app->open[PANEL_MENU]);
+    if (shown)
+        app->open[PANEL_KEYS] = app->open[PANEL_MENU] = false;
+    return shown;
+}
+
 bool actions_press(struct view_app *app, int key, unsigned modifiers)
 {
     if (played_app_press(app, key, modifiers))
@@ -404,6 +414,8 @@ bool actions_press(struct view_app *app, int key, unsigned modifiers)
         (modifiers == VIEW_CONTROL ? keep_bookmark : go_to_bookmark)(app, key - '0');
         return true;
     }
+    if (key == VIEW_KEY_ESCAPE && modifiers == 0 && close_page(app))
+        return true;
     if (key == VIEW_KEY_ESCAPE || key == VIEW_KEY_BACKQUOTE)
         key = key == VIEW_KEY_ESCAPE ? 'H' : VIEW_KEY_TAB;
     for (size_t i = 0; i < COUNT; i++) {

@@ -118,6 +118,8 @@ void app_set_panel(struct view_app *app, enum app_panel panel, bool open)
         if (panel_is_right((enum app_panel)other) == panel_is_right(panel))
             app->open[other] = false;
     app->open[panel] = open;
+    if (open)
+        app->settings.panels = 0; /* shown, even after H */
 }
 
 void app_inspect(struct view_app *app, const struct stage_pick *pick)
