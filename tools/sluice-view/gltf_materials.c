@@ -16,7 +16,7 @@ static const cJSON *extension(const cJSON *object, const char *name)
     return member(member(object, "extensions"), name);
 }
 
-/* KHR_texture_transform: scale first, then a turn counterclockwise with V down, then offset. */
+/* Reads KHR_texture_transform: scale, then counterclockwise rotation with V down, then offset. */
 static bool read_transform(struct gltf_file *file, const cJSON *info, const char *where,
                            struct scene_slot *slot, uint64_t *set)
 {
@@ -101,7 +101,7 @@ static int wrap_of(const cJSON *sampler, const char *name)
                            : VK_SAMPLER_ADDRESS_MODE_REPEAT;
 }
 
-/* Checked already: whole, and below the count. */
+/* Returns a checked index: whole, and below the count. */
 static uint32_t index_of(const cJSON *object, const char *name)
 {
     const cJSON *item = member(object, name);

@@ -22,7 +22,7 @@ bool played_facts_create(const struct stage *stage, struct view_facts *f)
     return f->textures && f->maps && history_create(SERIES_COUNT, &f->history);
 }
 
-/* Under the names of the streamer's. */
+/* Writes figures of a frame into the fields of the streamer's figures. */
 static void name_statistics(const struct played *p, struct view_facts *f)
 {
     SluiceStreamedTextureStatistics s = {.structSize = sizeof s};

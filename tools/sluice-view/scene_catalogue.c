@@ -39,7 +39,7 @@ static bool read_input(const SluiceInput *input, char *text, size_t size)
     return result == SLUICE_SUCCESS;
 }
 
-/* Ends with a zero; NULL if it failed. */
+/* Reads the text, with a zero at its end. NULL on failure. */
 static char *read_text(const char *path, struct remote_session *session)
 {
     const SluiceLogCallback log = {NULL, log_say};
@@ -60,7 +60,7 @@ static char *read_text(const char *path, struct remote_session *session)
     return text;
 }
 
-/* The name in a row of the catalogue; NULL if it has none. */
+/* Returns the name in a row of the catalogue; NULL: none. */
 static char *store_of(char *line)
 {
     for (int i = 0; line && i < STORE; i++) {

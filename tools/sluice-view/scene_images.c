@@ -28,7 +28,7 @@ bool scene_images_create_opener(const char *cache, struct scene_data *scene)
     char folder[4096];
     if (!cache_path(cache, "pictures", folder, sizeof folder) || !files_make_folders(folder))
         return false;
-    /* Frames need a processor, too. */
+    /* Leaves a processor to frames. */
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
                                         .pCacheFolder = folder,
@@ -53,7 +53,7 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
     return SCENE_NO_IMAGE;
 }
 
-/* The '#' behind the name of a file that has several pictures; NULL if there is none. */
+/* Finds the '#' after the name of a file with several pictures; NULL: none. */
 static const char *find_name(const char *path)
 {
     const char *set = strstr(path, ".ntc#"), *list = strstr(path, CATALOGUE "#");
@@ -63,8 +63,8 @@ static const char *find_name(const char *path)
     return query ? strchr(query, '#') : NULL;
 }
 
-/* "set.ntc#name" is a texture of a neural set, and "list.tsv#name" a store of a catalogue, unless a
- * file has this name. */
+/* Opens a path. "set.ntc#name" is a texture of a neural set, "list.tsv#name" a store of a
+ * catalogue, unless a file has this name. */
 static SluiceResult open_path(SluiceImageOpener *opener, const char *path,
                               const SluiceBakeSettings *settings, SluiceImageSource **source)
 {
@@ -84,7 +84,8 @@ static SluiceBakeWrap wrap_of(int mode)
                                                              : SLUICE_BAKE_WRAP_CLAMP;
 }
 
-/* Files that are no pictures have their levels already: they are only read as numbers. */
+/* Opens the source of an image. Bake settings apply to pictures. Other files have finished levels,
+ * so only their format changes. */
 static SluiceResult open_source(struct scene_data *scene, const struct scene_image_request *r,
                                 SluiceImageSource **source)
 {
@@ -108,7 +109,8 @@ static SluiceResult open_source(struct scene_data *scene, const struct scene_ima
     return result;
 }
 
-/* Views and picks know single pictures, and filters know numbers that can be mixed. */
+/* Returns why a source cannot be shown; NULL: it can. Views and picks need single pictures, filters
+ * need numbers that can be mixed. */
 static const char *find_refusal(SluiceImageSource *source)
 {
     SluiceImageInfo info = {.structSize = sizeof info};

@@ -66,7 +66,7 @@ static bool add_move(struct line *line, uint32_t after, float x, float y)
     return add(line, (struct script_step){.frame = after, .kind = SCRIPT_MOVE, .x = x, .y = y});
 }
 
-/* A button is held for a frame at least: ImGui 1.86 loses shorter clicks. */
+/* Adds a press of a button. It lasts at least one frame, since ImGui 1.86 loses shorter clicks. */
 static bool add_press(struct line *line, uint32_t after, uint32_t frames, int button)
 {
     return add(line,

@@ -36,7 +36,7 @@ enum script_kind {
     SCRIPT_QUIT
 };
 
-/** One step of input. A click has three: a move and two buttons. */
+/** A step of input. A click has three steps: a move and two buttons. */
 struct script_step {
     uint32_t frame, order; ///< `order`: position in the file, for steps of one frame
     enum script_kind kind;

@@ -46,7 +46,7 @@ void hall_add_quad(struct mesh *mesh, const float corner[3], const float right[3
     }
 }
 
-/* The two faces of a box across each axis in `axes`. */
+/* Adds the two faces of a box that are perpendicular to each axis in `axes`. */
 static void add_box(struct mesh *mesh, const float low[3], const float high[3], const char *axes)
 {
     for (; *axes; axes++) {

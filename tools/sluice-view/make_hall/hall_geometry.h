@@ -31,8 +31,8 @@ struct mesh {
 /** Returns painting `number`, or the floor for HALL_FLOOR. */
 struct hall_picture hall_picture(uint32_t number);
 
-/** Adds a quad. `corner` is its top left one, seen from its front. `right` and `down` lie along
- * axes. uv is 0 to 1. */
+/** Adds a quad. `corner`: its top left corner, seen from the front. `right` and `down` are parallel
+ *  to axes. UVs are 0 to 1. */
 void hall_add_quad(struct mesh *mesh, const float corner[3], const float right[3],
                    const float down[3]);
 

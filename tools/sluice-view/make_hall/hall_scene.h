@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/** Writes FOLDER/hall.gltf and hall.bin. Says on stderr why it failed. */
+/** Writes FOLDER/hall.gltf and hall.bin. Reports failures on stderr. */
 bool hall_scene_write(const char *folder);
 
 #endif /* SLUICE_VIEW_HALL_SCENE_H */

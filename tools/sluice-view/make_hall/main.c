@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <stdlib.h>
 
-/* Digits 0 to 9 and x: 5 rows of 3 dots, the highest bit at the top left. */
+/* Font of digits 0 to 9 and x: 5 rows of 3 dots, the highest bit at the top left. */
 static const uint16_t font[11] = {075557, 026227, 071747, 071717, 055711, 074717,
                                   074757, 071111, 075757, 075717, 005250};
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Index of the first of the three mixtures of colors a < b. */
+/* Returns the index of the first of three mixtures of colors a < b. */
 static uint32_t pair_index(uint32_t a, uint32_t b)
 {
     return PAINTING_COLORS + 3 * (b * (b - 1) / 2 + a);

@@ -7,13 +7,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Colors of the palette: those of a painting, and quarters of each pair. */
+/** Number of colors in the palette: colors of a painting, and three mixtures of each pair. */
 #define PALETTE_SIZE (PAINTING_COLORS + PAINTING_COLORS * (PAINTING_COLORS - 1) / 2 * 3)
 
-/** Index of the mixture of four samples, each below PAINTING_COLORS. A third color is ignored. */
+/** Returns the index of the mixture of four samples, each below PAINTING_COLORS. Ignores a third
+ *  color. */
 uint8_t palette_mix(const uint32_t samples[4]);
 
-/** Writes width x height indices below PALETTE_SIZE. Says on stderr why it failed. */
+/** Writes width x height indices below PALETTE_SIZE. Reports failures on stderr. */
 bool palette_png_write(const char *path, const uint8_t *indices, uint32_t width, uint32_t height,
                        const uint8_t (*colors)[3]);
 
