@@ -410,7 +410,7 @@ static const struct control table[] = {
      "Events",
      {OPTION_CHOICE, "event-reason",
       "all|feedback|added|taken-up|prefetched|answered|retried|evicted|unmapped|called|removed",
-      "all", NULL, "reason of the events that are listed"},
+      "all", NULL, "reason of the events that are listed."},
      FIELD(event_reason),
      NULL,
      0},

@@ -207,9 +207,10 @@ void panel_now(struct view_app *app)
             "being read.");
         const uint32_t baking = stage_baking_count(app->stage);
         if (baking > 0) {
-            ui_text(UI_ORANGE, "%u pictures are being prepared", baking);
-            ui_hint("Tiles of these pictures are made once, and kept in the cache (--cache). Until "
-                    "then coarse levels are shown.");
+            ui_text(UI_ORANGE, "baking %u picture%s into tiles", baking, baking == 1 ? "" : "s");
+            ui_hint(
+                "Pictures are baked into tile stores when they are first opened, and kept in the "
+                "cache (--cache). Coarse levels are shown until then.");
         }
         if (f->budget && f->resident_size > f->budget && f->tails_size > 0) {
             ui_text(UI_ORANGE, "%s are mip tails, which stay",

@@ -191,5 +191,5 @@ void viewer_swap(struct viewer *v)
     app->times[1] = times;
     frames_swap_halves(&v->frames);
     app->swap = false;
-    app_say(app, "A and B are swapped: nothing is loaded again");
+    app_say(app, "A and B are swapped. The swap loads and evicts nothing");
 }
