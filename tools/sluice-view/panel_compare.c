@@ -54,6 +54,10 @@ void panel_compare_figures(const struct view_app *app)
             panel_size(app->facts_b.resident_size, right, sizeof right));
     ui_text(UI_WHITE, "A %s, B %s sharp", sharp_words(&app->facts, left, sizeof left),
             sharp_words(&app->facts_b, right, sizeof right));
+    if (app->settings.compared == VIEW_WITH_EVERYTHING &&
+        app->facts_b.resident_size < app->facts_b.all_size && app->facts_b.now.loadsInFlight > 0)
+        ui_text(UI_ORANGE, "B is still loading: %.0f %%",
+                100.0 * (double)app->facts_b.resident_size / (double)app->facts_b.all_size);
     ui_text(UI_GRAY, "each is drawn over the whole picture");
 }
 
