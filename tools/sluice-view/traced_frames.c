@@ -8,8 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_VAIN_LAUNCHES 200u /* then the next sample begins, though some pixels are incomplete  \
-                                 */
+#define MOST_VAIN_LAUNCHES 200u /* then the next sample begins, with incomplete pixels */
 #define BIAS_STEP 0.05f         /* a larger change of the LOD bias starts a new picture */
 
 /* Fits the whole film into the window. A wider window shows more at the sides, a narrower one more
