@@ -351,7 +351,7 @@ static const struct action table[] = {
     {"Panels", "Shift+T", NULL, "what settings cost here", toggle_panel, PANEL_TRADE},
     {"Panels", "Ctrl+T", NULL, "sweep settings, or cancel", sweep, 0},
     {"Panels", NULL, "Ctrl+Tab", "arrows, Enter, Delete in a panel", NULL, 0},
-    {"Panels", "H", "H or Esc", "hide all, and back", hide_panels, 0},
+    {"Panels", "H", "H or Esc", "hide panels, and back", hide_panels, 0},
 
     {"Program", "F1", NULL, "all keys", toggle_panel, PANEL_KEYS},
     {"Program", "F10", NULL, "menu", toggle_panel, PANEL_MENU},

@@ -93,10 +93,12 @@ static void draw_sums(struct view_app *app)
     const struct view_facts *f = &app->facts;
     const struct memory_sums sums = memory_sums_of(app->stage);
     char resident[32], standby[32], device[32], tails[32];
-    ui_text(UI_WHITE, "%s resident, of it %s standby: %.1f %% of all",
+    ui_text(UI_WHITE, "%s resident (%.1f %%), %s standby",
             panel_size(f->resident_size, resident, sizeof resident),
-            panel_size(f->standby_size, standby, sizeof standby),
-            f->all_size ? 100.0 * (double)f->resident_size / (double)f->all_size : 0.0);
+            f->all_size ? 100.0 * (double)f->resident_size / (double)f->all_size : 0.0,
+            panel_size(f->standby_size, standby, sizeof standby));
+    ui_hint("Tiles in memory, as size and as part of all textures with all levels. Standby tiles "
+            "are resident and no longer requested; they are evicted first.");
     ui_text(UI_GRAY, "%s of device memory for tiles",
             panel_size(f->memory_size, device, sizeof device));
     if (sums.heaps > 0) {
@@ -108,8 +110,7 @@ static void draw_sums(struct view_app *app)
                 sums.spare_heaps, sums.heaps);
     }
     ui_text(f->budget && f->tails_size > f->budget ? UI_ORANGE : UI_GRAY,
-            "%s of mip tails, which no budget evicts",
-            panel_size(f->tails_size, tails, sizeof tails));
+            "%s of mip tails, never evicted", panel_size(f->tails_size, tails, sizeof tails));
     ui_hint("Each texture keeps the tiles of its coarsest levels (its mip tail) as "
             "long as memory allows. Heaps with such tiles stay, too.");
 }
