@@ -107,7 +107,7 @@ static void broken_files_are_refused_with_file_and_cause(void **state)
     static const struct {
         const char *from, *to, *cause;
     } rows[] = {
-        {"{\"asset\"", "[\"asset\"", "no JSON"},
+        {"{\"asset\"", "[\"asset\"", "not valid JSON"},
         {"\"version\":\"2.0\"", "\"version\":\"1.0\"", "no glTF of version 2"},
         {"\"scenes\":[{\"nodes\":[1,0]}]", "\"scenes\":{}", "scenes is no array"},
         {"\"scenes\":[{", "\"scenes\":[7,{", "scenes[0] is no object"},

@@ -267,7 +267,7 @@ static bool open_whole(struct gltf_file *file)
                          (unsigned long long)json.size, (unsigned long long)MAX_JSON);
     file->json = cJSON_ParseWithLength((const char *)json.bytes, (size_t)json.size);
     if (!cJSON_IsObject(file->json))
-        return gltf_fail(file, "is no JSON that can be read");
+        return gltf_fail(file, "is not valid JSON");
     for (int kind = 0; kind < GLTF_KIND_COUNT; kind++)
         if (!list(file, (enum gltf_kind)kind))
             return false;

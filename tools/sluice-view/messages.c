@@ -95,7 +95,7 @@ static const struct {
     {"checksum", "The file is damaged: copy it or bake it again."},
     {"CORRUPT_DATA", "The file is damaged or cut off: copy or export it again."},
     {"ends at byte", "The file is damaged or cut off: copy or export it again."},
-    {"is no JSON", "The file is damaged or cut off: copy or export it again."},
+    {"is not valid JSON", "The file is damaged or cut off: copy or export it again."},
     {"is no base64", "The file is damaged or cut off: copy or export it again."},
     {"cut off", "The file is damaged or cut off: copy or export it again."},
     {"is damaged", "The file is damaged: copy or export it again."},
