@@ -63,16 +63,17 @@ void panel_keys(struct view_app *app)
     if (!app->open[PANEL_KEYS])
         return;
     list_rows(app, &rows);
-    const uint32_t lines = (count_lines(&rows) + KEY_COLUMNS - 1) / KEY_COLUMNS + 1;
+    const uint32_t columns = app->width < 800 * scale ? KEY_COLUMNS - 1 : KEY_COLUMNS;
+    const uint32_t lines = (count_lines(&rows) + columns - 1) / columns + 1;
     ui_begin_tight((float)lines * ui_line_height() > app->height - 60 * scale);
     float height = (float)lines * ui_line_height();
-    float width = (app->width - 60 * scale) / KEY_COLUMNS;
+    float width = (app->width - 60 * scale) / (float)columns;
     if (height > app->height - 60 * scale)
         height = app->height - 60 * scale;
     if (width > 330 * scale)
         width = 330 * scale;
     if (ui_begin_panel("All keys (F1)", &app->open[PANEL_KEYS], placement, pivot, UI_PANEL_FIT))
-        for (int column = 0; column < KEY_COLUMNS; column++) {
+        for (uint32_t column = 0; column < columns; column++) {
             static const char *const ids[KEY_COLUMNS] = {"left", "middle", "right"};
             if (column > 0)
                 ui_same_line(0);
