@@ -24,7 +24,7 @@ noise() { awk -v seed="$1" -v n="$2" 'BEGIN { srand(seed); for (i = 0; i < n; i+
     tail -c 48 small.ppm | od -An -v -tu1 | tr -s ' \n' ' ' | awk '{ for (y = 0; y < 256; y++) for (x = 0; x < 256; x++)
         for (k = 0; k < 3; k++) printf "%c", $(3 * (int(y / 64) * 4 + int(x / 64)) + k + 1) }'
 } >large.ppm
-nearest() { view --residency "$1" --filter nearest --frames 12 --screenshot "$2-$1.png" "$2.ppm"; }
+nearest() { view --residency "$1" --texel-filter nearest --frames 12 --screenshot "$2-$1.png" "$2.ppm"; }
 nearest sparse small && nearest sparse large && nearest paged small && nearest paged large &&
     cmp small-sparse.png large-sparse.png && cmp small-paged.png large-paged.png && cmp small-sparse.png small-paged.png &&
     view --frames 12 --screenshot linear.png small.ppm && ! cmp -s linear.png small-sparse.png

@@ -43,6 +43,23 @@ static enum option_outcome read_command(char *line, struct view_options *options
     return options_read(count, words, options);
 }
 
+static void options_replace_kept_settings_also_by_their_default(void **state)
+{
+    (void)state;
+    struct view_options options;
+    struct view_settings kept;
+    char line[] = "sluice-view --budget 0 --anisotropy=4";
+    assert_int_equal(read_command(line, &options), OPTIONS_RUN);
+    controls_set_defaults(&kept);
+    kept.budget = 64u << 20;
+    kept.anisotropy = 2;
+    kept.standby = 7;
+    controls_take_given(&options.settings, options.given, &kept);
+    assert_int_equal(kept.budget, 0);
+    assert_int_equal(kept.anisotropy, 4);
+    assert_int_equal(kept.standby, 7);
+}
+
 static void every_setting_and_the_camera_come_back_from_the_copied_command(void **state)
 {
     (void)state;
@@ -189,6 +206,7 @@ static void no_key_means_two_things(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(options_replace_kept_settings_also_by_their_default),
         cmocka_unit_test(every_setting_and_the_camera_come_back_from_the_copied_command),
         cmocka_unit_test(every_setting_of_b_comes_back_from_the_copied_command),
         cmocka_unit_test(names_and_values_that_b_does_not_have_are_refused),

@@ -105,6 +105,8 @@ static bool take_option(struct command_line *line)
     if (!option)
         return refuse_unknown(line->table, argument);
     const char *equals = argument[1] == '-' ? strchr(argument, '=') : NULL;
+    if (option->given)
+        *option->given = true;
     if (option->kind == OPTION_RENAMED)
         return options_refuse(line->table, "--%s is called --%s", option->name, option->operand);
     if (option->kind == OPTION_LIST)

@@ -62,6 +62,7 @@ struct option {
     char letter;             ///< 'o' for -o; 0: none.
     bool (*parse)(const char *text, void *value); ///< CUSTOM: false if the text is no such value.
     const char *wanted; ///< CUSTOM: the values, behind "wants". NULL: `operand`.
+    bool *given;        ///< becomes true if the command line has the option; may be NULL
 };
 
 struct option_table {

@@ -186,7 +186,7 @@ static const struct control table[] = {
      CONTROL_REOPENS},
     {"Sampling",
      "Filter",
-     {OPTION_CHOICE, "filter", "linear|nearest", "linear", NULL,
+     {OPTION_CHOICE, "texel-filter", "linear|nearest", "linear", NULL,
       "nearest: one texel of one level, without anisotropy"},
      FIELD(filter),
      NULL,
@@ -439,7 +439,8 @@ struct option control_option(const struct control *control, struct view_settings
     return option;
 }
 
-size_t controls_write_options(struct view_settings *settings, struct option *options)
+size_t controls_write_options(struct view_settings *settings, bool given[CONTROLS_MAX],
+                              struct option *options)
 {
     size_t count = 0;
     const char *group = "";
@@ -447,7 +448,8 @@ size_t controls_write_options(struct view_settings *settings, struct option *opt
         if (strcmp(group, table[i].group) != 0)
             options[count++] = (struct option){OPTION_SECTION, .help = table[i].group};
         group = table[i].group;
-        options[count++] = control_option(&table[i], settings);
+        options[count] = control_option(&table[i], settings);
+        options[count++].given = &given[i];
     }
     return count;
 }
@@ -562,11 +564,12 @@ void controls_write_command(const struct view_settings *settings, char *text, si
                                  control_write(&table[i], settings, value, sizeof value));
 }
 
-void controls_take_changes(const struct view_settings *from, struct view_settings *to)
+void controls_take_given(const struct view_settings *from, const bool given[CONTROLS_MAX],
+                         struct view_settings *to)
 {
     char text[64];
     for (size_t i = 0; i < COUNT; i++)
-        if (!control_is_default(&table[i], from)) {
+        if (given[i]) {
             const struct option option = control_option(&table[i], to);
             option_value_read(&option, control_write(&table[i], from, text, sizeof text));
         }

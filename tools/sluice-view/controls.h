@@ -37,8 +37,10 @@ const struct control *controls_find(const char *name);
 bool control_is_of_sets(const struct control *control);
 /** Returns the row as an option that reads and writes `settings`. */
 struct option control_option(const struct control *control, struct view_settings *settings);
-/** Writes headings and options, at most 2 * CONTROLS_MAX. Returns their number. */
-size_t controls_write_options(struct view_settings *settings, struct option *options);
+/** Writes headings and options, at most 2 * CONTROLS_MAX. Returns their number. given[i] becomes
+ * true once the command line has control i. */
+size_t controls_write_options(struct view_settings *settings, bool given[CONTROLS_MAX],
+                              struct option *options);
 void controls_set_defaults(struct view_settings *settings);
 void control_reset(const struct control *control, struct view_settings *settings);
 /** Sets a control from text. False, with a line on stderr that begins with `speaker`, for an
@@ -52,8 +54,9 @@ bool controls_budget_fits(const struct view_settings *settings);
 const char *control_write(const struct control *control, const struct view_settings *settings,
                           char *text, size_t size);
 bool control_is_default(const struct control *control, const struct view_settings *settings);
-/** Copies controls whose value in `from` is not the default. */
-void controls_take_changes(const struct view_settings *from, struct view_settings *to);
+/** Copies the controls that are given. */
+void controls_take_given(const struct view_settings *from, const bool given[CONTROLS_MAX],
+                         struct view_settings *to);
 /** Writes the controls that are not at their default: " --budget 64 --view 3". */
 void controls_write_command(const struct view_settings *settings, char *text, size_t size);
 

@@ -89,7 +89,7 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
     };
     struct option all[sizeof own / sizeof *own + 2 * CONTROLS_MAX];
     *o = (struct view_options){0};
-    size_t count = controls_write_options(&o->settings, all);
+    size_t count = controls_write_options(&o->settings, o->given, all);
     memcpy(all + count, own, sizeof own);
     count += sizeof own / sizeof *own;
     const struct option_table table = {"sluice-view", usage, notes, all, count};

@@ -2,12 +2,14 @@
 #ifndef SLUICE_VIEW_OPTIONS_H
 #define SLUICE_VIEW_OPTIONS_H
 
+#include "controls.h"
 #include "settings.h"
 
 #include "../common/option_table.h"
 
 struct view_options {
     struct view_settings settings;
+    bool given[CONTROLS_MAX]; ///< controls that the command line has
     struct option_texts b;    ///< settings of B, in the syntax of sets_read
     struct option_list words; ///< scenes
     bool room, headless, deterministic, fresh, json, validation, list_devices, still;

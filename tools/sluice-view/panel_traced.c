@@ -30,7 +30,7 @@ bool panel_traced_takes(const char *control)
     static const char *const names[] = {"standby",        "timeout",          "residency",
                                         "load",           "feedback",         "feedback-by",
                                         "texture-sets",   "misses-to-forget", "prefetch-levels",
-                                        "filter",         "finest-level",     "alpha-test",
+                                        "texel-filter",   "finest-level",     "alpha-test",
                                         "probability",    "tiles-per-frame",  "loads-in-flight",
                                         "fade",           "borders",          "textures-per-frame",
                                         "source-latency", "source-bandwidth", "source-fails",

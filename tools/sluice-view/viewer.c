@@ -614,7 +614,7 @@ static void read_settings(struct viewer *v)
     controls_set_defaults(&v->app.b);
     settings_file_read(v->settings_path, &v->app);
     const bool kept = v->app.settings.compared == VIEW_WITH_B;
-    controls_take_changes(&o->settings, &v->app.settings);
+    controls_take_given(&o->settings, o->given, &v->app.settings);
     begin_b(v, kept);
 }
 
