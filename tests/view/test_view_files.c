@@ -191,6 +191,20 @@ static void a_folder_shows_folders_and_what_the_viewer_reads(void **state)
     browser_finish(&b);
 }
 
+static void the_folder_of_a_scene_may_begin_like_a_url(void **state)
+{
+    struct browser b = {.scene = "https-pictures/a.png"};
+    char before[4096];
+    (void)state;
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(mkdir(path_of("https-pictures"), 0777), 0);
+    assert_int_equal(chdir(path_of(".")), 0);
+    browser_begin(&b);
+    assert_int_equal(chdir(before), 0);
+    assert_string_equal(strrchr(b.folder, '/'), "/https-pictures");
+    browser_finish(&b);
+}
+
 static void keys_walk_through_folders_and_choose_a_file(void **state)
 {
     struct browser b = {.folder = ""};
@@ -389,6 +403,7 @@ int main(void)
         cmocka_unit_test(a_dropped_file_has_its_report_and_one_that_failed_its_messages),
         cmocka_unit_test(a_picture_inside_of_a_file_has_the_report_of_the_file),
         cmocka_unit_test(a_folder_shows_folders_and_what_the_viewer_reads),
+        cmocka_unit_test(the_folder_of_a_scene_may_begin_like_a_url),
         cmocka_unit_test(keys_walk_through_folders_and_choose_a_file),
         cmocka_unit_test(typed_paths_are_entered_and_opened),
         cmocka_unit_test(folders_that_cannot_be_read_are_named_and_can_be_left),

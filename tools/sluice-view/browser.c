@@ -5,6 +5,7 @@
 #include "browser.h"
 
 #include "../common/picture_names.h"
+#include "../common/remote.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -171,7 +172,7 @@ void browser_begin(struct browser *b)
     if (!b->folder[0]) {
         char *slash = NULL;
         snprintf(folder, sizeof folder, "%s", b->scene);
-        if (strncmp(folder, "http", 4) != 0 && strncmp(folder, "s3:", 3) != 0)
+        if (!remote_is_url(folder))
             slash = strrchr(folder, '/');
         if (slash)
             slash[slash == folder] = '\0';

@@ -149,8 +149,9 @@ void panel_played_now(struct view_app *app)
         if (f->now.globalMipBias > 0)
             ui_text(UI_RED, "memory is short: +%.1f level", f->now.globalMipBias / 16.0);
         if (f->now.failedTileCount + f->now.givenUpTileCount > 0)
-            ui_text(UI_RED, "%u tiles failed to load (K)",
-                    f->now.failedTileCount + f->now.givenUpTileCount);
+            ui_text(UI_RED, "%u tile%s failed to load (K)",
+                    f->now.failedTileCount + f->now.givenUpTileCount,
+                    f->now.failedTileCount + f->now.givenUpTileCount == 1 ? "" : "s");
         draw_warnings(app);
     }
     ui_end_panel();
