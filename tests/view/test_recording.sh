@@ -108,7 +108,7 @@ show --room --render-scale 0.2 --cache . --script drop --json && [ "$(value fram
     show --render-scale 0.2 --cache . --script drop run.trace && grep -q 'pictures.ppm' out
 fact recordings_are_dropped_onto_scenes_and_scenes_onto_recordings
 echo '2 record again.trace' >record
-show --script record run.trace && grep -q 'not recorded again' err && echo '2 frame 3' >record &&
+show --script record run.trace && grep -q 'cannot be recorded; use' err && echo '2 frame 3' >record &&
     run 0 --room --headless --deterministic --fresh --cache . --size 160x160 --script record && grep -q 'no recording is shown' err
 fact events_that_do_not_apply_are_refused_by_words
 pin() {

@@ -149,6 +149,22 @@ static void a_panel_that_is_opened_by_its_key_is_seen_after_panels_were_hidden(v
     assert_true(actions_press(&app, 'M', 0));
     assert_true(app.open[PANEL_MEMORY]);
     assert_int_equal(app.settings.panels, 0);
+    assert_true(actions_press(&app, 'H', 0));
+    assert_true(actions_press(&app, 'M', 0));
+    assert_true(app.open[PANEL_MEMORY]);
+    assert_int_equal(app.settings.panels, 0);
+    assert_true(actions_press(&app, 'M', 0));
+    assert_false(app.open[PANEL_MEMORY]);
+}
+
+static void a_panel_that_opens_by_itself_leaves_panels_hidden(void **state)
+{
+    static struct view_app app;
+    (void)state;
+    app_init(&app);
+    app.settings.panels = 1;
+    app_set_panel(&app, PANEL_FILE, true);
+    assert_int_equal(app.settings.panels, 1);
 }
 
 static void escape_closes_the_page_of_keys_and_the_menu_before_it_hides_panels(void **state)
@@ -174,6 +190,7 @@ int main(void)
         cmocka_unit_test(the_page_of_keys_has_every_key),
         cmocka_unit_test(every_key_that_does_something_is_in_the_menu),
         cmocka_unit_test(a_panel_that_is_opened_by_its_key_is_seen_after_panels_were_hidden),
+        cmocka_unit_test(a_panel_that_opens_by_itself_leaves_panels_hidden),
         cmocka_unit_test(escape_closes_the_page_of_keys_and_the_menu_before_it_hides_panels)};
     return cmocka_run_group_tests(tests, draw_panels, end_panels);
 }

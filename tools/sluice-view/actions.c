@@ -22,7 +22,10 @@ static void show_last_view(struct view_app *app, int argument)
 
 static void toggle_panel(struct view_app *app, int panel)
 {
-    app_set_panel(app, (enum app_panel)panel, !app->open[panel]);
+    if (app->open[panel] && app->settings.panels == 0)
+        app_set_panel(app, (enum app_panel)panel, false);
+    else
+        app_show_panel(app, (enum app_panel)panel);
 }
 
 static void play(struct view_app *app, int argument)
@@ -226,7 +229,7 @@ static void sweep(struct view_app *app, int argument)
 {
     (void)argument;
     app->trade_toggle = true;
-    app_set_panel(app, PANEL_TRADE, true);
+    app_show_panel(app, PANEL_TRADE);
 }
 
 static void reload_shaders(struct view_app *app, int argument)

@@ -118,8 +118,12 @@ void app_set_panel(struct view_app *app, enum app_panel panel, bool open)
         if (panel_is_right((enum app_panel)other) == panel_is_right(panel))
             app->open[other] = false;
     app->open[panel] = open;
-    if (open)
-        app->settings.panels = 0; /* shown, even after H */
+}
+
+void app_show_panel(struct view_app *app, enum app_panel panel)
+{
+    app_set_panel(app, panel, true);
+    app->settings.panels = 0;
 }
 
 void app_inspect(struct view_app *app, const struct stage_pick *pick)
@@ -128,7 +132,7 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick)
         return;
     app->inspect = *pick;
     app->selected = pick->texture;
-    app_set_panel(app, PANEL_INSPECTOR, true);
+    app_show_panel(app, PANEL_INSPECTOR);
 }
 
 void app_write_command(const struct view_app *app, char *text, size_t size)

@@ -151,6 +151,8 @@ void app_say(struct view_app *app, const char *format, ...) UI_PRINTF(2, 3);
 void app_set_view(struct view_app *app, uint32_t view);
 /** Opens or closes a panel. One that opens takes the place of the others on its side. */
 void app_set_panel(struct view_app *app, enum app_panel panel, bool open);
+/** Opens a panel that the user asked for, and shows hidden panels. */
+void app_show_panel(struct view_app *app, enum app_panel panel);
 void app_inspect(struct view_app *app, const struct stage_pick *pick);
 /** Moves the camera before a surface that has a tile of a texture. */
 void app_look_at_tile(struct view_app *app, uint32_t texture, const SluiceTile *tile);

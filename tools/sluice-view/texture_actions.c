@@ -68,7 +68,7 @@ static bool look_at_file(struct view_app *app, uint32_t texture)
     if (!path[0])
         return false;
     file_facts_look(&app->file, path);
-    app_set_panel(app, PANEL_FILE, true);
+    app_show_panel(app, PANEL_FILE);
     return true;
 }
 
