@@ -162,7 +162,7 @@ printf '5 set size 360x300\n40 set vsync off\n60 quit\n' >sizes
 open_viewer $validation --vsync mailbox --json --script sizes && until_true 20 size_is 360x300 && ended_well && [ ! -s err ] &&
     grep -q '"present mode", "value": "IMMEDIATE"' out
 fact the_window_follows_size_and_vsync_of_the_settings
-open_viewer --vsync mailbox --json && xdotool windowsize "$window" 500 300 && until_true 20 copies ' --size 500x300' &&
+open_viewer --vsync mailbox --json && xdotool windowsize "$window" 500 300 && until_true 60 copies ' --size 500x300' &&
     xdotool key ctrl+q && ended_well && grep -q '"present mode", "value": "MAILBOX"' out
 fact the_settings_follow_the_size_that_somebody_gave_the_window
 export LOSE_AFTER=20
