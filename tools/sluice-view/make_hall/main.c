@@ -9,13 +9,12 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <stdlib.h>
 
 /* Font of digits 0 to 9 and x: 5 rows of 3 dots, the highest bit at the top left. */
 static const uint16_t font[11] = {075557, 026227, 071747, 071717, 055711, 074717,
                                   074757, 071111, 075757, 075717, 005250};
 
-/* Returns true if `text` has a dot at column x, row y. */
+/* Returns 1 if `text` has a dot at column x, row y, else 0. */
 static int text_dot(const char *text, int x, int y)
 {
     for (; *text && x >= 4; text++)
@@ -65,8 +64,10 @@ static int make_picture(const char *folder, const struct hall_picture *picture)
                                       (double)picture->width / picture->height};
     const double spread = picture->number == HALL_FLOOR ? 0 : 1;
     uint8_t *indices = malloc((size_t)picture->width * picture->height);
-    if (!indices)
+    if (!indices) {
+        fprintf(stderr, "make-hall: out of memory\n");
         return 1;
+    }
     for (uint32_t y = 0; y < picture->height; y++)
         for (uint32_t x = 0; x < picture->width; x++) {
             uint32_t samples[4];
@@ -90,7 +91,9 @@ static int make_picture(const char *folder, const struct hall_picture *picture)
 int main(int argc, char **argv)
 {
     if (argc < 2 || argc > 3) {
-        fprintf(stderr, "usage: make-hall FOLDER [NUMBER]\n");
+        fprintf(stderr,
+                "usage: make-hall FOLDER [NUMBER]\n"
+                "writes hall.gltf, hall.bin and pictures; with NUMBER, only that picture\n");
         return 2;
     }
     int failed = 0;
